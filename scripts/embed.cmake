@@ -1,0 +1,18 @@
+# Writes the given text files as one C++ table of {name, text} pairs. Raw string literals are cut in pieces, because
+# a compiler need not accept one longer than 65,536 bytes.
+set(table "")
+string(REPLACE "|" ";" FILES "${FILES}")
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} text)
+  set(pieces "")
+  string(LENGTH "${text}" length)
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${text}" ${at} 12000 piece)
+    string(APPEND pieces "R\"__lw(${piece})__lw\"\n")
+    math(EXPR at "${at} + 12000")
+  endwhile()
+  string(APPEND table "{\"${name}\",\n${pieces}},\n")
+endforeach()
+file(WRITE ${OUT} "${table}")
