@@ -1,0 +1,73 @@
+// A pack's paints in the form that can be mixed: what the pack file holds, seen through spans.
+//
+// Why it exists: the kiosk maps the file and realises from it without copying (the spans may point into the mapping),
+// the builder fills the same shape from vectors. It owns nothing but small tables; whoever made it keeps the memory
+// alive. Read-only: any number of threads.
+//
+// Flakes: row = level * slice_count + slice. Each row holds tuples (one cluster per paint under one transported mass,
+// Golla & Klein 2018, 4.1), sorted by L at equal weights, so that a random rank in [0, 1) means the same flake at all
+// weights. Each paint keeps its own clusters once; tuples index them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/paint.hpp"
+#include "core/slice_layout.hpp"
+
+namespace lackwerk::core {
+
+inline constexpr int max_paints = 5;
+/// A row index has 8 bits in the rank table: 5 paints of 50 clusters give at most 5*50-4 = 246 tuples.
+inline constexpr int max_tuples_per_row = 256;
+inline constexpr int max_clusters_per_row = 250;
+
+/// Lab corners on a 16-bit grid shared by all paints of a pack: value = lo + (hi - lo) * q / 65535, per axis.
+struct LabRange {
+  glm::vec3 lo{0.0f};
+  glm::vec3 hi{1.0f};
+};
+
+/// A cuboid in Lab on that grid. Memory order is the renderer's texture order: [axis L,a,b][corner min,max].
+struct QuantisedCuboid {
+  std::array<std::uint16_t, 6> q{};  ///< L min, L max, a min, a max, b min, b max
+  bool operator==(const QuantisedCuboid&) const = default;
+};
+static_assert(sizeof(QuantisedCuboid) == 12);
+
+struct InterpolatablePaint {
+  struct PaintPart {
+    PaintIdentity identity;
+    AnalyticPaint analytic;
+    std::span<const std::uint32_t> cluster_begin;  ///< rows + 1: first cluster of each row in `clusters`
+    std::span<const QuantisedCuboid> clusters;     ///< all rows, all levels
+    std::span<const std::uint8_t> tuple_cluster;   ///< per tuple: index within the row's clusters
+  };
+
+  std::vector<PaintPart> paints;               ///< 1 to max_paints
+  SliceLayout layout;                          ///< empty where no paint of the pack has flakes
+  std::uint16_t level_count = 0;               ///< mip levels; the last one is 1 x 1 texel
+  float texel_mm = 0.0f;                       ///< edge of a level-0 texel on the paint
+  std::uint32_t level0_texels = 0;             ///< texels per edge of a level-0 slice (480)
+  LabRange range;                              ///< of all quantised corners, of pi * Xi under D65
+  std::span<const std::uint32_t> tuple_begin;  ///< rows + 1: first tuple of each row
+  std::span<const std::uint32_t> mass;         ///< per tuple; the masses of one row sum to row_mass
+  std::uint32_t row_mass = 0;                  ///< the same for all rows, [1, 2^30]
+  std::uint64_t random_seed = 0;               ///< of the random textures: nothing derivable is stored
+
+  [[nodiscard]] int row_count() const { return level_count * layout.slice_count(); }
+};
+
+/// One number per paint for each group; every group sums to 1. Beyond [0, 1] is extrapolation.
+struct Weights {
+  std::vector<double> base;             ///< diffuse, lobes, coat, colour table
+  std::vector<double> flake_lightness;  ///< L of the flakes
+  std::vector<double> flake_colour;     ///< a and b of the flakes
+  /// The same weights in all three groups.
+  [[nodiscard]] static Weights uniform(std::vector<double> w) { return {w, w, w}; }
+  bool operator==(const Weights&) const = default;
+};
+
+}  // namespace lackwerk::core

@@ -1,0 +1,248 @@
+// The paint model, written once: this text is GLSL ES 1.00 and, included inside the struct of paint_model.hpp, C++.
+//
+// Rules of the house: literals through R(); `real` for scalars; components only as .x .y .z .w (no swizzles); loops
+// with constant bounds; no names that begin with gl_. What the surroundings provide, in both languages:
+//   uniforms     u_diffuse, u_lobe[3], u_inv_m, u_coat_ior, u_refraction_ior, u_table_size,
+//                u_flake_scale, u_slice_count, u_level_count, u_bins_per_rad, u_lab_lo, u_lab_span
+//   constants    LINEAR_FROM_XYZ_R/G/B (vec3, white folded in), LAB_DELTA, LOBES
+//   fetches      fetch_chi, fetch_mean, fetch_slice, fetch_rank, fetch_corner, fetch_random
+//
+// All reflectances here are radiance factors rho = pi * f: a light that gives a white diffuser the radiance E/pi gives
+// this surface the radiance rho * (n.i) * E/pi. Directions are unit vectors that point away from the surface.
+//
+// Sources: Guenther et al. 2005 eq. 1; Golla & Klein 2018 eq. 1 to 7 and 3.2; Kneiphof et al. 2018 eq. 6.
+
+// Below this cosine a lobe returns 0: the divisions by n.i and n.o have no meaning there and the true product with
+// n.i goes to 0 (1.7e-3 is 89.9 degrees; also what other AxF importers use).
+#define MIN_COSINE R(1.7e-3)
+
+real pow5(real x) {
+  real x2 = x * x;
+  return x2 * x2 * x;
+}
+
+// Unpolarised Fresnel reflectance of a dielectric seen from outside; c = cosine of incidence, ior >= 1.
+// g = sqrt(ior^2 - 1 + c^2) (Cook & Torrance 1982, eq. 7). Exactly 0 at ior = 1.
+real fresnel_dielectric(real c, real ior) {
+  real g2 = (ior - R(1.0)) * (ior + R(1.0)) + c * c;
+  real g = sqrt(max(g2, R(0.0)));
+  real a = (ior - R(1.0)) * (ior + R(1.0)) / ((g + c) * (g + c) + R(1e-6));  // (g - c)/(g + c) without cancellation
+  real b_up = c * (g + c) - R(1.0);
+  real b_down = c * (g - c) + R(1.0);
+  real b = b_up / max(b_down, R(1e-4));
+  return min(R(0.5) * a * a * (R(1.0) + b * b), R(1.0));
+}
+
+// Schlick's approximation (1994) with h.o as its cosine; f0 in [0, 1].
+real fresnel_schlick(real ho, real f0) {
+  return f0 + (R(1.0) - f0) * pow5(clamp(R(1.0) - ho, R(0.0), R(1.0)));
+}
+
+// The direction inside a coat of index eta >= 1 (Snell); eta = 1 changes nothing.
+vec3 refract_into(vec3 d, vec3 n, real eta) {
+  real c = dot(n, d);
+  real cos2 = R(1.0) - (R(1.0) - c * c) / (eta * eta);
+  return (d - n * c) * (R(1.0) / eta) + n * sqrt(max(cos2, R(0.0)));
+}
+
+// Beckmann D * G / (i_z o_z) of one lobe, without s and F. tan_h = tan(theta_h), nh = n.h, ho = h.o.
+// D = exp(-tan^2/m^2) / (m^2 nh^4), kept as one power of two: with m = 1e-3, 1/m^2 = 1e6 does not fit 16 bits but its
+// logarithm does. The ratio tan/m is clamped at 16, where exp(-256) is 0 in every format, so that its square fits.
+// G is the V-cavity term (Cook & Torrance 1982, eq. 8). The exponent is clamped below 16 - 2^-6: 65504 is the largest
+// 16-bit value.
+real lobe_shape(real tan_h, real nh, real ho, real iz, real oz, real inv_m) {
+  real x = min(tan_h * inv_m, R(16.0));
+  real g = min(R(1.0), R(2.0) * nh * min(iz, oz) / max(ho, MIN_COSINE));
+  real e = R(2.0) * log2(inv_m) - x * x * R(1.4426950408889634) - R(4.0) * log2(max(nh, MIN_COSINE));
+  return exp2(e) * g / (iz * oz);
+}
+
+// Everything about one pair of directions that the terms below share. Angles in radians.
+struct Geometry {
+  real iz;       // n.i inside the coat
+  real oz;       // n.o inside the coat
+  real nh;       // n.h
+  real ho;       // h.o = h.i
+  real tan_h;    // tan(theta_h)
+  real theta_h;  // between h and n
+  real theta_i;  // between h and i (the difference angle)
+};
+
+Geometry paint_geometry(vec3 n, vec3 i, vec3 o) {
+  Geometry g;
+  vec3 sum = i + o;
+  vec3 diff = i - o;
+  real sum_length = max(length(sum), R(1e-4));
+  real nsum = dot(n, sum);
+  vec3 c = cross(n, sum);
+  real sin_h = length(c);
+  g.iz = dot(n, i);
+  g.oz = dot(n, o);
+  g.nh = nsum / sum_length;
+  g.ho = R(0.5) * sum_length;
+  g.tan_h = sin_h / max(nsum, R(1e-4));
+  g.theta_h = atan(sin_h, max(nsum, R(0.0)));
+  g.theta_i = atan(length(diff), sum_length);
+  return g;
+}
+
+// a + sum of lobes, without chi: the radiance factor of the smooth part.
+vec3 lobes_factor(Geometry g) {
+  vec3 sum = u_diffuse;
+  if (g.iz > MIN_COSINE && g.oz > MIN_COSINE) {
+#if LOBES > 0
+    sum += make_vec3(u_lobe[0]) *
+           (fresnel_schlick(g.ho, u_lobe[0].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.x));
+#endif
+#if LOBES > 1
+    sum += make_vec3(u_lobe[1]) *
+           (fresnel_schlick(g.ho, u_lobe[1].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.y));
+#endif
+#if LOBES > 2
+    sum += make_vec3(u_lobe[2]) *
+           (fresnel_schlick(g.ho, u_lobe[2].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.z));
+#endif
+  }
+  return sum;
+}
+
+#if HAS_TABLE
+// chi with its angles clamped to theta_i <= pi/2 - theta_h, where real tables end.
+vec3 chi_factor(real theta_h, real theta_i) {
+  real ti = max(min(theta_i, R(1.5707963267948966) - theta_h), R(0.0));
+  real per_rad = (u_table_size - R(1.0)) * R(0.6366197723675814);  // nodes at 0 and 90 degrees
+  return fetch_chi((theta_h * per_rad + R(0.5)) / u_table_size, (ti * per_rad + R(0.5)) / u_table_size);
+}
+#endif
+
+#if HAS_FLAKES
+// Lab of a radiance factor to linear sRGB, >= 0 (CIE 15:2004; the toe is linear).
+real lab_component(real f) {
+  return f > LAB_DELTA ? f * f * f : R(3.0) * LAB_DELTA * LAB_DELTA * (f - R(4.0) / R(29.0));
+}
+vec3 linear_from_lab_factor(vec3 lab) {
+  real fy = (lab.x + R(16.0)) / R(116.0);
+  vec3 xyz = vec3(lab_component(fy + lab.y / R(500.0)), lab_component(fy), lab_component(fy - lab.z / R(200.0)));
+  return max(vec3(dot(LINEAR_FROM_XYZ_R, xyz), dot(LINEAR_FROM_XYZ_G, xyz), dot(LINEAR_FROM_XYZ_B, xyz)),
+             vec3(R(0.0)));
+}
+
+// A 16-bit number from two bytes of an RGBA8 texel (low, high), as [0, 1].
+real from_bytes(real low, real high) {
+  return (low * R(255.0) + high * R(65280.0)) / R(65535.0);
+}
+
+// The random numbers of one texel: x = warped rank, y z w = place inside the cuboid along L, a, b.
+// `cell` counts texels of that level; each level looks at another part of the texture. The third number comes from
+// the other two bytes: fract(97 y + 57 z) is uniform, and independent of each of them alone.
+vec4 flake_random(vec2 cell, real level) {
+  vec4 t = fetch_random(cell.x + R(37.0) * level, cell.y + R(91.0) * level);
+  real y = fract(R(97.0) * t.z + R(57.0) * t.w);
+  return vec4(min(from_bytes(t.x, t.y), R(0.999984)), y, t.z, t.w);
+}
+
+// One slice at one level: rank -> tuple -> cuboid -> Lab -> linear sRGB.
+vec3 flake_tap(real bin_h, real bin_i, real level, vec4 random) {
+  vec4 where = fetch_slice(bin_h, bin_i);
+  if (where.y > R(0.5)) {
+    return vec3(R(0.0));  // outside the table there are no flakes
+  }
+  real row = level * u_slice_count + floor(where.x * R(255.0) + R(0.5));
+  real scaled = random.x * R(256.0);
+  real step_index = floor(scaled);
+  real f = scaled - step_index;
+  vec4 entry = fetch_rank(step_index, row);
+  real tuple = floor(entry.x * R(255.0) + R(0.5));
+  tuple += f >= entry.y ? R(1.0) : R(0.0);
+  tuple += f >= entry.z ? R(1.0) : R(0.0);
+  tuple += f >= entry.w ? R(1.0) : R(0.0);
+  vec4 cl = fetch_corner(R(3.0) * tuple, row);
+  vec4 ca = fetch_corner(R(3.0) * tuple + R(1.0), row);
+  vec4 cb = fetch_corner(R(3.0) * tuple + R(2.0), row);
+  vec3 q = vec3(mix(from_bytes(cl.x, cl.y), from_bytes(cl.z, cl.w), random.y),
+                mix(from_bytes(ca.x, ca.y), from_bytes(ca.z, ca.w), random.z),
+                mix(from_bytes(cb.x, cb.y), from_bytes(cb.z, cb.w), random.w));
+  return linear_from_lab_factor(u_lab_lo + u_lab_span * q);
+}
+
+// All angle taps of one level. FLAKE_TAPS 1: the nearest slice; 4: bilinear between the four around.
+vec3 flake_level(real fh, real fi, vec2 surface_texel, real level) {
+  vec2 cell = floor(surface_texel * exp2(-level));
+  vec4 random = flake_random(cell, level);
+#if FLAKE_TAPS == 1
+  return flake_tap(floor(fh + R(0.5)), floor(fi + R(0.5)), level, random);
+#else
+  real h0 = floor(fh);
+  real i0 = floor(fi);
+  real wh = fh - h0;
+  real wi = fi - i0;
+  return (flake_tap(h0, i0, level, random) * (R(1.0) - wh) + flake_tap(h0 + R(1.0), i0, level, random) * wh) *
+             (R(1.0) - wi) +
+         (flake_tap(h0, i0 + R(1.0), level, random) * (R(1.0) - wh) +
+          flake_tap(h0 + R(1.0), i0 + R(1.0), level, random) * wh) *
+             wi;
+#endif
+}
+
+// The flakes' mean, for lights and distances at which single flakes do not show: bilinear between slices.
+vec3 flake_mean(real theta_h, real theta_i) {
+  real fh = theta_h * u_bins_per_rad;
+  real fi = theta_i * u_bins_per_rad;
+  real h0 = floor(fh);
+  real i0 = floor(fi);
+  real wh = fh - h0;
+  real wi = fi - i0;
+  return (fetch_mean(h0, i0) * (R(1.0) - wh) + fetch_mean(h0 + R(1.0), i0) * wh) * (R(1.0) - wi) +
+         (fetch_mean(h0, i0 + R(1.0)) * (R(1.0) - wh) + fetch_mean(h0 + R(1.0), i0 + R(1.0)) * wh) * wi;
+}
+
+// Flakes as they show in a pixel. surface_texel: place on the paint in level-0 texels; lod: log2 of the pixel's
+// footprint in level-0 texels. The last level is one texel, whose colour is the mean.
+vec3 flake_factor(real theta_h, real theta_i, vec2 surface_texel, real lod) {
+  real fh = theta_h * u_bins_per_rad;
+  real fi = theta_i * u_bins_per_rad;
+  real last = u_level_count - R(1.0);
+  if (lod >= last) {
+    return flake_mean(theta_h, theta_i);
+  }
+  real l = max(lod, R(0.0));
+  real l0 = floor(l);
+  real f = l - l0;
+  vec3 sum = flake_level(fh, fi, surface_texel, l0) * (R(1.0) - f);
+  if (f > R(0.0)) {
+    sum += (l0 + R(1.0) >= last ? flake_mean(theta_h, theta_i) : flake_level(fh, fi, surface_texel, l0 + R(1.0))) * f;
+  }
+  return sum;
+}
+#endif
+
+// The radiance factor of the whole paint for light from i seen from o, except the coat's mirror image.
+// show_flakes: 1 for single flakes, 0 for their mean.
+vec3 paint_factor(vec3 n, vec3 i, vec3 o, vec2 surface_texel, real lod, real show_flakes) {
+  real ci = dot(n, i);
+  real co = dot(n, o);
+  if (ci <= R(0.0) || co <= R(0.0)) {
+    return vec3(R(0.0));
+  }
+  real through = R(1.0);
+#if HAS_COAT
+  through = (R(1.0) - fresnel_dielectric(ci, u_coat_ior)) * (R(1.0) - fresnel_dielectric(co, u_coat_ior));
+#endif
+#if HAS_REFRACTION
+  Geometry g = paint_geometry(n, refract_into(i, n, u_refraction_ior), refract_into(o, n, u_refraction_ior));
+#else
+  Geometry g = paint_geometry(n, i, o);
+#endif
+  vec3 factor = lobes_factor(g);
+#if HAS_TABLE
+  factor *= chi_factor(g.theta_h, g.theta_i);
+#endif
+#if HAS_FLAKES
+  if (show_flakes > R(0.5)) {
+    factor += flake_factor(g.theta_h, g.theta_i, surface_texel, lod);
+  } else {
+    factor += flake_mean(g.theta_h, g.theta_i);
+  }
+#endif
+  return factor * through;
+}

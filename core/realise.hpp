@@ -1,0 +1,39 @@
+// realise(weights): from the mixable form to what the GPU gets (Golla & Klein 2018, eq. 14 and 15).
+//
+// Why it exists: it is the one thing that happens per frame while a customer drags. Pure functions over values; the
+// output buffers are the caller's and are reused, so a drag allocates nothing. Any thread, one output per thread.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/interpolatable_paint.hpp"
+
+namespace lackwerk::core {
+
+/// Sums further from 1 than this are refused as a caller's mistake; closer ones are what float sliders produce.
+inline constexpr double weight_sum_tolerance = 1e-6;
+
+/// Checks number of weights, finiteness and sums.
+[[nodiscard]] Result<void> check_weights(const InterpolatablePaint& paint, const Weights& weights);
+
+/// What the GPU gets. `corners` is the texture: row_count() rows of `width` tuples of one QuantisedCuboid each
+/// (as texels: three RGBA8 per tuple; low byte first); unused tuples are 0.
+struct RealisedPaint {
+  AnalyticPaint analytic;                ///< table in linear sRGB
+  int width = 0;                         ///< most tuples in any row
+  std::vector<QuantisedCuboid> corners;  ///< row_count() * width
+  std::vector<glm::vec3> flake_mean;     ///< per slice: mean of pi * Xi over level 0, linear sRGB, >= 0
+};
+
+/// Linear blend of a, s, m, F0, IORs and (in Lab) chi, lobes paired by roughness; clamped to m >= 1e-3, a and s >= 0,
+/// F0 in [0, 1], IOR >= 1 (Golla & Klein 2018, 4.2).
+[[nodiscard]] AnalyticPaint realise_analytic(const InterpolatablePaint& paint, const Weights& weights);
+
+/// Blends all corners and their means into `out`. Weights must have passed check_weights. At e_k the corners are
+/// bit for bit those of paint k. Extrapolated corners are clamped to the pack's range and keep min <= max.
+void realise(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out);
+
+}  // namespace lackwerk::core
