@@ -1,0 +1,42 @@
+// A capture: one measured (or virtually measured) paint before any statistics, in a folder.
+//
+// Why it exists: it is the door for real measurements. It holds AxF CarPaint2's quantities one to one, so whoever has
+// that SDK can export into it. `paint.toml` carries names, provenance, lobes, IOR, layout; `colour.exr` the colour
+// table, `flakes/slice_NN.exr` one HDR image per slice. Values; any thread. Files are read and written here only.
+//
+// Conventions: flake texels are the radiance factor pi * Xi (not radiance, not the BRDF) in linear sRGB, >= 0.
+// AnalyticPaint holds lobes already lowered by what the flakes reflect, so that BRDF + mean flakes is the paint.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/paint.hpp"
+#include "core/slice_layout.hpp"
+
+namespace lackwerk::packs {
+
+/// One square HDR image, linear sRGB, row-major, `edge * edge` texels.
+struct FlakeSlice {
+  std::vector<glm::vec3> texels;
+};
+
+struct Capture {
+  core::PaintIdentity identity;
+  core::AnalyticPaint analytic;
+  core::SliceLayout layout;        ///< empty: the paint has no flakes (a plain paint)
+  std::uint32_t edge_texels = 0;   ///< per slice edge, [1, 4096]
+  float texel_mm = 0.0f;           ///< edge of one texel on the paint, > 0
+  std::vector<FlakeSlice> slices;  ///< layout.slice_count() of them
+};
+
+/// Reads a capture folder. Errors name file and field: missing or truncated images, wrong sizes, NaN or negative
+/// texels, lobes out of range.
+[[nodiscard]] Result<Capture> read_capture(const std::filesystem::path& folder);
+
+/// Writes (and replaces) a capture folder.
+[[nodiscard]] Result<void> write_capture(const Capture& capture, const std::filesystem::path& folder);
+
+}  // namespace lackwerk::packs

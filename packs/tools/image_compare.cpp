@@ -1,0 +1,130 @@
+#include "packs/tools/image_compare.hpp"
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/colour.hpp"
+
+namespace lackwerk::packs {
+namespace {
+
+constexpr int max_edge = 16384;
+constexpr std::size_t max_pixels = 64'000'000;
+
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+/// Decoding tables make an 8-bit picture as quick as a linear one.
+std::array<float, 256> make_decode_table() {
+  std::array<float, 256> table{};
+  for (std::size_t k = 0; k < table.size(); ++k)
+    table[k] = static_cast<float>(core::srgb_decode(static_cast<double>(k) / 255.0));
+  return table;
+}
+
+Result<void> check_spec(const OIIO::ImageSpec& spec, const std::string& file) {
+  if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.width > max_edge || spec.height > max_edge ||
+      static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) > max_pixels)
+    return fail(file, "size", size_text(spec.width, spec.height) + " is not supported",
+                "use at most 16384 pixels an edge and 64 million in all");
+  if (spec.nchannels < 1 || spec.nchannels > 16)
+    return fail(file, "channels", std::to_string(spec.nchannels) + " channels", "save it as RGB");
+  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+      spec.height != spec.full_height)
+    return fail(file, "data window", "is not the whole picture", "save it uncropped");
+  return {};
+}
+
+}  // namespace
+
+Result<LinearImage> read_image(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;  // or PNG colours come back multiplied by their alpha
+  const auto input = OIIO::ImageInput::open(file, &config);
+  if (!input) {
+    const std::string reason = OIIO::geterror();
+    return fail(file, "", "cannot be read" + (reason.empty() ? "" : ": " + reason), "check the path and the format");
+  }
+  const OIIO::ImageSpec spec = input->spec();
+  if (auto ok = check_spec(spec, file); !ok) return tl::unexpected(ok.error());
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  LinearImage out{spec.width, spec.height, {}};
+  const std::size_t count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  std::vector<float> values(count * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
+    return fail(file, "", "cannot be read: " + input->geterror(), "the file is damaged: make it again");
+
+  const bool encoded = !spec.format.is_floating_point();
+  const bool bytes = spec.format == OIIO::TypeDesc::UINT8;
+  const std::array<float, 256> table = make_decode_table();
+  const auto decode = [&](float v) {
+    if (!encoded) return v;
+    if (bytes) return table[static_cast<std::size_t>(std::clamp(std::lround(v * 255.0f), 0l, 255l))];
+    return static_cast<float>(core::srgb_decode(static_cast<double>(v)));
+  };
+  out.pixels.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const float* v = &values[k * channels];
+    const glm::vec3 pixel =
+        channels < 3 ? glm::vec3(decode(v[0])) : glm::vec3(decode(v[0]), decode(v[1]), decode(v[2]));
+    if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z))
+      return fail(file, "pixel " + std::to_string(k), "is not a finite number", "render it again");
+    out.pixels[k] = pixel;
+  }
+  return out;
+}
+
+Result<ImageDifference> compare_images(const LinearImage& a, const LinearImage& b, std::vector<float>* map) {
+  if (a.width != b.width || a.height != b.height || a.pixels.size() != b.pixels.size())
+    return fail("", "size", size_text(a.width, a.height) + " and " + size_text(b.width, b.height),
+                "compare pictures of one size", ErrorKind::run);
+  if (a.pixels.empty()) return fail("", "size", "the pictures are empty", "compare real pictures");
+  std::vector<float> difference(a.pixels.size());
+  double sum = 0.0;
+  for (std::size_t k = 0; k < difference.size(); ++k) {
+    // Equal pixels are common in golden comparisons, and CIEDE2000 is slow.
+    if (a.pixels[k] == b.pixels[k]) continue;
+    const double d =
+        core::ciede2000(core::lab_from_linear(glm::dvec3(a.pixels[k])), core::lab_from_linear(glm::dvec3(b.pixels[k])));
+    difference[k] = static_cast<float>(d);
+    sum += d;
+  }
+  if (map != nullptr) *map = difference;
+  const std::size_t n = difference.size();
+  const auto percentile = [&](std::size_t percent) {
+    const std::size_t rank = (n * percent + 99) / 100;  // nearest rank, counted from 1
+    const auto at = difference.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+    std::nth_element(difference.begin(), at, difference.end());
+    return static_cast<double>(*at);
+  };
+  ImageDifference out;
+  out.pixels = n;
+  out.mean = sum / static_cast<double>(n);
+  out.p95 = percentile(95);
+  out.p99 = percentile(99);
+  out.max = percentile(100);
+  return out;
+}
+
+Result<void> write_difference_map(const std::filesystem::path& path, int width, int height,
+                                  const std::vector<float>& map) {
+  const std::string file = path.string();
+  std::vector<std::uint8_t> grey(map.size());
+  for (std::size_t k = 0; k < map.size(); ++k)
+    grey[k] = static_cast<std::uint8_t>(std::lround(std::min(map[k] / map_white_difference, 1.0f) * 255.0f));
+  const auto output = OIIO::ImageOutput::create(file);
+  const OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
+  if (!output) {
+    (void)OIIO::geterror();  // OpenImageIO prints unread errors at exit
+    return fail(file, "", "cannot be written: unknown format", "give the map a name that ends in .png");
+  }
+  if (!output->open(file, spec) || !output->write_image(OIIO::TypeDesc::UINT8, grey.data()) || !output->close())
+    return fail(file, "", "cannot be written: " + output->geterror(), "check the folder and free space");
+  return {};
+}
+
+}  // namespace lackwerk::packs
