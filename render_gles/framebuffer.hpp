@@ -1,0 +1,40 @@
+// Where all pictures are drawn: an RGBA8 texture and a depth buffer of our own.
+//
+// Why it exists: with one kind of target both backends, the kiosk and the tests draw alike, and the kiosk can present
+// the colour texture. Owns its GL objects; destroy it while its context is current; one GL thread.
+#pragma once
+
+#include <cstdint>
+
+#include "core/error.hpp"
+#include "render_gles/context.hpp"
+#include "render_gles/gl_object.hpp"
+#include "render_gles/image.hpp"
+
+namespace lackwerk::gles {
+
+class Framebuffer {
+ public:
+  /// `width` and `height` in pixels, at least 1. `context` must be current and outlive the result.
+  /// Error: larger than the driver's limits, or the driver refuses the combination.
+  [[nodiscard]] static Result<Framebuffer> create(const Context& context, int width, int height);
+
+  /// Binds it for drawing and sets the viewport to all of it.
+  void bind() const;
+  /// The picture, rows from top to bottom, alpha dropped. Waits for the GPU. Leaves this framebuffer bound.
+  [[nodiscard]] Image read() const;
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  /// 24 where OES_depth24 (or desktop GL) offers it, else core ES 2.0's 16.
+  [[nodiscard]] int depth_bits() const { return depth_bits_; }
+  /// The colour texture, to present or to filter: RGBA8, no mip levels, row 0 at the bottom.
+  [[nodiscard]] GLuint texture() const { return colour_.id(); }
+
+ private:
+  const GlApi* gl_ = nullptr;
+  GlObject framebuffer_, colour_, depth_;
+  int width_ = 0, height_ = 0, depth_bits_ = 16;
+};
+
+}  // namespace lackwerk::gles

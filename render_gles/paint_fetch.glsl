@@ -1,0 +1,62 @@
+// What paint_model.glsl and studio.glsl expect from their surroundings, in GLSL: uniforms and texture fetches.
+// All textures are RGBA8; sizes and meaning stand in core/paint_textures.hpp. The C++ twin is core/paint_model.hpp.
+
+uniform vec3 u_diffuse;
+uniform vec4 u_lobe[3];
+uniform vec3 u_inv_m;
+uniform float u_coat_ior;
+uniform float u_refraction_ior;
+uniform float u_studio_gain;
+uniform vec2 u_floor_shadow;
+
+#if HAS_TABLE
+uniform sampler2D u_chi;
+uniform float u_table_size;
+uniform float u_chi_scale;
+
+// The sampler's own linear filter works with 8-bit weights or results on some hardware, which would show as steps
+// across a bonnet; four nearest taps cost little and are the same everywhere.
+vec3 chi_texel(vec2 corner) { return texture2D(u_chi, (corner + 0.5) / u_table_size).xyz; }
+vec3 fetch_chi(float u, float v) {
+  vec2 last = vec2(u_table_size - 1.0);
+  vec2 at = clamp(vec2(u, v) * u_table_size - 0.5, vec2(0.0), last);
+  vec2 low = min(floor(at), max(last - 1.0, vec2(0.0)));
+  vec2 w = at - low;
+  vec3 upper = mix(chi_texel(low), chi_texel(low + vec2(1.0, 0.0)), w.x);
+  vec3 lower = mix(chi_texel(low + vec2(0.0, 1.0)), chi_texel(low + vec2(1.0, 1.0)), w.x);
+  vec3 root = mix(upper, lower, w.y);
+  return root * root * u_chi_scale;
+}
+#endif
+
+#if HAS_FLAKES
+uniform sampler2D u_mean;
+uniform sampler2D u_slice;
+uniform sampler2D u_rank;
+uniform sampler2D u_corner;
+uniform sampler2D u_random;
+uniform vec2 u_corner_size;  // texels: 3 width, rows (the rank table has as many rows)
+uniform float u_slice_count;
+uniform float u_level_count;
+uniform float u_bins_per_rad;
+uniform vec3 u_lab_lo;
+uniform vec3 u_lab_span;
+uniform vec3 u_flake_fill;
+
+const float ANGLE_GRID = 16.0;
+const float RANK_STEPS = 256.0;
+const float RANDOM_EDGE = 512.0;
+
+// Shared exponent in A, biased by 128; A = 0 stands for black.
+vec3 fetch_mean(float bin_h, float bin_i) {
+  vec4 t = texture2D(u_mean, (vec2(bin_h, bin_i) + 0.5) / ANGLE_GRID);
+  float exponent = floor(t.w * 255.0 + 0.5);
+  return exponent > 0.5 ? t.xyz * exp2(exponent - 128.0) : vec3(0.0);
+}
+vec4 fetch_slice(float bin_h, float bin_i) { return texture2D(u_slice, (vec2(bin_h, bin_i) + 0.5) / ANGLE_GRID); }
+vec4 fetch_rank(float step_index, float row) {
+  return texture2D(u_rank, vec2((step_index + 0.5) / RANK_STEPS, (row + 0.5) / u_corner_size.y));
+}
+vec4 fetch_corner(float x, float row) { return texture2D(u_corner, (vec2(x, row) + 0.5) / u_corner_size); }
+vec4 fetch_random(float x, float y) { return texture2D(u_random, (vec2(x, y) + 0.5) / RANDOM_EDGE); }
+#endif

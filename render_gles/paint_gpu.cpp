@@ -1,0 +1,188 @@
+#include "render_gles/paint_gpu.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace lackwerk::gles {
+namespace {
+
+int real_lobes(const core::AnalyticPaint& paint) {
+  return static_cast<int>(std::count_if(paint.lobes.begin(), paint.lobes.end(),
+                                        [](const core::Lobe& lobe) { return lobe.s != glm::dvec3(0.0); }));
+}
+
+glm::vec3 narrow(const glm::dvec3& v) { return glm::vec3(v); }
+
+}  // namespace
+
+glm::vec3 flake_fill(const core::InterpolatablePaint& paint, const core::PaintTextures& textures) {
+  if (textures.row_count == 0) return glm::vec3(0.0f);
+  const glm::dvec3 peak = textures.mean_at(0, 0);
+  constexpr int steps = 256;
+  const double step = std::numbers::pi / 2.0 / steps;
+  glm::dvec3 sum(0.0);
+  for (int k = 0; k < steps; ++k) {
+    const double t = (k + 0.5) * step;
+    // The shader's flake_mean on the diagonal theta_h = theta_i = t/2, linear between nodes.
+    const double at = t * 0.5 / paint.layout.bin_width_rad();
+    const int low = static_cast<int>(at);
+    const double w = at - low;
+    const glm::dvec3 near_row = textures.mean_at(low, low) * (1.0 - w) + textures.mean_at(low + 1, low) * w;
+    const glm::dvec3 far_row = textures.mean_at(low, low + 1) * (1.0 - w) + textures.mean_at(low + 1, low + 1) * w;
+    sum += (near_row * (1.0 - w) + far_row * w) * (2.0 * std::sin(t) * std::cos(t) * step);
+  }
+  glm::vec3 fill(0.0f);
+  for (int c = 0; c < 3; ++c) fill[c] = peak[c] > 0.0 ? static_cast<float>(sum[c] / peak[c]) : 0.0f;
+  return fill;
+}
+
+Result<PaintGpu> PaintGpu::create(const Context& context, const core::InterpolatablePaint& paint) {
+  PaintGpu out(context.gl(), paint);
+  for (const auto& part : paint.paints) {
+    out.lobes_ = std::max(out.lobes_, real_lobes(part.analytic));
+    out.table_ = out.table_ || part.analytic.table.has_value();
+    out.coat_ = out.coat_ || part.analytic.coat_ior > 1.0;
+    out.refraction_ = out.refraction_ || part.analytic.refraction_ior > 1.0;
+  }
+  out.textures_ = core::make_static_textures(paint);
+  if (out.textures_.row_count > 0) {
+    const int largest = context.info().max_texture_size;
+    const int needed = std::max({core::random_edge, 3 * core::max_tuples_per_row, out.textures_.row_count});
+    if (needed > largest)
+      return fail("", "flakes",
+                  "the pack needs textures of " + std::to_string(needed) + " texels an edge, " +
+                      context.info().renderer + " has " + std::to_string(largest),
+                  "draw without flakes, or build the pack with fewer mip levels");
+    out.upload(out.slice_, core::angle_grid, core::angle_grid, out.textures_.slice.data(), false, true);
+    out.upload(out.rank_, core::rank_table_steps, out.textures_.row_count, out.textures_.rank.data(), false, true);
+    out.upload(out.random_, core::random_edge, core::random_edge, out.textures_.random.data(), true, true);
+  }
+  check_gl(context.gl(), "upload of a paint");
+  return out;
+}
+
+void PaintGpu::upload(GlObject& texture, int width, int height, const void* rgba, bool repeat, bool resized) {
+  gl_->ActiveTexture(GL_TEXTURE0);
+  if (!texture) {
+    texture = make_texture(*gl_);
+    resized = true;
+  }
+  gl_->BindTexture(GL_TEXTURE_2D, texture.id());
+  gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  if (resized) {
+    const GLint wrap = repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+    gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+  } else {
+    gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+  }
+  ++uploads_.uploads;
+  uploads_.bytes += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * 4;
+}
+
+void PaintGpu::upload_chi() {
+  if (textures_.table_size > 0)
+    upload(chi_, textures_.table_size, textures_.table_size, textures_.chi.data(), false, false);
+}
+
+void PaintGpu::upload_flakes() {
+  if (textures_.row_count == 0) return;
+  upload(mean_, core::angle_grid, core::angle_grid, textures_.mean.data(), false, false);
+  upload(corner_, 3 * textures_.width, textures_.row_count, textures_.corner.data(), false, false);
+  flake_fill_ = flake_fill(*paint_, textures_);
+}
+
+Result<bool> PaintGpu::update(const core::Weights& weights) {
+  if (auto checked = core::check_weights(*paint_, weights); !checked) return tl::unexpected(checked.error());
+  const bool first = weights_.base.empty();
+  const bool base = first || weights.base != weights_.base;
+  const bool flakes =
+      first || weights.flake_lightness != weights_.flake_lightness || weights.flake_colour != weights_.flake_colour;
+  if (!base && !flakes) return false;
+  if (flakes) {
+    core::realise(*paint_, weights, realised_);
+  } else {
+    realised_.analytic = core::realise_analytic(*paint_, weights);
+    std::swap(realised_.corners, textures_.corner);  // update_textures swaps them back
+  }
+  core::update_textures(*paint_, realised_, textures_);
+  if (base) upload_chi();
+  if (flakes) upload_flakes();
+  weights_ = weights;
+  check_gl(*gl_, "upload of a realised paint");
+  return true;
+}
+
+void PaintGpu::add_features(Features& features) const {
+  features.lobes = lobes_;
+  features.table = table_;
+  features.coat = coat_;
+  features.refraction = refraction_;
+  features.flakes = features.flakes && textures_.row_count > 0;
+}
+
+void PaintGpu::apply(const GlApi& gl, const Program& program) const {
+  const core::AnalyticPaint& paint = realised_.analytic;
+  const auto vector = [&](const char* name, const glm::vec3& v) {
+    gl.Uniform3f(program.location(name), v.x, v.y, v.z);
+  };
+  const auto number = [&](const char* name, double v) { gl.Uniform1f(program.location(name), static_cast<float>(v)); };
+  vector("u_diffuse", narrow(paint.diffuse));
+  std::array<float, 4 * core::max_lobes> lobes{};
+  glm::vec3 inv_m(1.0f);
+  for (std::size_t k = 0; k < core::max_lobes; ++k) {
+    const core::Lobe& lobe = paint.lobes[k];
+    for (int c = 0; c < 3; ++c) lobes[4 * k + static_cast<std::size_t>(c)] = static_cast<float>(lobe.s[c]);
+    lobes[4 * k + 3] = static_cast<float>(lobe.f0);
+    inv_m[static_cast<int>(k)] = static_cast<float>(1.0 / lobe.m);
+  }
+  gl.Uniform4fv(program.location("u_lobe"), static_cast<GLsizei>(core::max_lobes), lobes.data());
+  vector("u_inv_m", inv_m);
+  number("u_coat_ior", paint.coat_ior);
+  number("u_refraction_ior", paint.refraction_ior);
+
+  const auto texture = [&](const char* name, GLint unit, const GlObject& object) {
+    const GLint location = program.location(name);
+    if (location < 0) return;
+    gl.Uniform1i(location, unit);
+    gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    gl.BindTexture(GL_TEXTURE_2D, object.id());
+  };
+  texture("u_chi", 0, chi_);
+  texture("u_mean", 1, mean_);
+  texture("u_slice", 2, slice_);
+  texture("u_rank", 3, rank_);
+  texture("u_corner", 4, corner_);
+  texture("u_random", 5, random_);
+  number("u_table_size", std::max(textures_.table_size, 1));
+  number("u_chi_scale", textures_.chi_scale);
+  if (textures_.row_count == 0) return;
+  gl.Uniform2f(program.location("u_corner_size"), static_cast<float>(3 * textures_.width),
+               static_cast<float>(textures_.row_count));
+  number("u_slice_count", paint_->layout.slice_count());
+  number("u_level_count", paint_->level_count);
+  number("u_bins_per_rad", 1.0 / paint_->layout.bin_width_rad());
+  vector("u_lab_lo", paint_->range.lo);
+  vector("u_lab_span", paint_->range.hi - paint_->range.lo);
+  vector("u_flake_fill", flake_fill_);
+}
+
+std::vector<std::string> PaintGpu::explain() const {
+  std::vector<std::string> out;
+  if (lobes_ < static_cast<int>(core::max_lobes))
+    out.push_back("left out: " + std::to_string(static_cast<int>(core::max_lobes) - lobes_) + " of " +
+                  std::to_string(core::max_lobes) + " lobes: no paint of the pack has more than " +
+                  std::to_string(lobes_));
+  if (!table_) out.emplace_back("left out: colour table: no paint of the pack has one");
+  if (!coat_) out.emplace_back("left out: clear coat: no paint of the pack has one that mirrors (coat index 1)");
+  if (!refraction_) out.emplace_back("left out: refraction: no paint of the pack bends directions (index 1)");
+  if (textures_.row_count == 0) out.emplace_back("left out: flakes: no paint of the pack has any");
+  return out;
+}
+
+}  // namespace lackwerk::gles

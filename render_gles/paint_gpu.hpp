@@ -1,0 +1,75 @@
+// The realised paint on the GPU: its textures and uniforms.
+//
+// Why it exists: while a customer drags, only what depends on the changed weights may travel to the GPU. This file
+// knows which is which and counts it. Reads the paint through a pointer: whoever made it keeps it alive. Owns GL
+// textures; destroy it while its context is current; one GL thread.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/interpolatable_paint.hpp"
+#include "core/paint_textures.hpp"
+#include "core/realise.hpp"
+#include "render_gles/program.hpp"
+
+namespace lackwerk::gles {
+
+/// What has been sent to the GPU so far.
+struct UploadCount {
+  std::uint64_t uploads = 0;  ///< calls that carried bytes
+  std::uint64_t bytes = 0;
+  bool operator==(const UploadCount&) const = default;
+};
+
+class PaintGpu {
+ public:
+  /// Uploads what depends on the pack alone. `context` must be current; it and `paint` must outlive the result.
+  /// Error: a texture of the pack is larger than the driver allows.
+  [[nodiscard]] static Result<PaintGpu> create(const Context& context, const core::InterpolatablePaint& paint);
+
+  /// Realises the paint at these weights and uploads what changed. Returns whether anything did.
+  /// Error: weights that core::check_weights refuses; nothing has changed then.
+  [[nodiscard]] Result<bool> update(const core::Weights& weights);
+
+  /// Switches on what this pack needs, at any weights: lobes, table, flakes, coat, refraction.
+  void add_features(Features& features) const;
+  /// Sets the program's paint uniforms and binds the textures to units 0 to 5. The program must be in use.
+  void apply(const GlApi& gl, const Program& program) const;
+  /// What the pack did not need, and why; one line each.
+  [[nodiscard]] std::vector<std::string> explain() const;
+
+  [[nodiscard]] const UploadCount& uploads() const { return uploads_; }
+  /// Edge of a level-0 flake texel, mm; 0 without flakes.
+  [[nodiscard]] float texel_mm() const { return paint_->texel_mm; }
+  /// The numbers the GPU sees, for tests and for the CPU model. Valid until the next update.
+  [[nodiscard]] const core::PaintTextures& textures() const { return textures_; }
+  [[nodiscard]] const core::AnalyticPaint& analytic() const { return realised_.analytic; }
+  /// True until the first successful update: there is nothing to draw yet.
+  [[nodiscard]] bool pending() const { return weights_.base.empty(); }
+
+ private:
+  PaintGpu(const GlApi& gl, const core::InterpolatablePaint& paint) : gl_(&gl), paint_(&paint) {}
+  void upload(GlObject& texture, int width, int height, const void* rgba, bool repeat, bool resized);
+  void upload_chi();
+  void upload_flakes();
+
+  const GlApi* gl_;
+  const core::InterpolatablePaint* paint_;
+  core::RealisedPaint realised_;
+  core::PaintTextures textures_;
+  core::Weights weights_;
+  int lobes_ = 0;
+  bool table_ = false, coat_ = false, refraction_ = false;
+  glm::vec3 flake_fill_{0.0f};
+  GlObject chi_, mean_, slice_, rank_, corner_, random_;
+  UploadCount uploads_;
+};
+
+/// Albedo of the mean flakes at normal view over their value at (0, 0), per channel: 2 times the integral of
+/// mu(t/2, t/2) sin t cos t over t in [0, pi/2], divided by mu(0, 0); 0 where mu(0, 0) is 0. studio.glsl says why.
+[[nodiscard]] glm::vec3 flake_fill(const core::InterpolatablePaint& paint, const core::PaintTextures& textures);
+
+}  // namespace lackwerk::gles
