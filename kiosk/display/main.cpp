@@ -1,0 +1,46 @@
+// lackwerk-kiosk: the program that runs in the showroom.
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "kiosk/display/loop.hpp"
+#include "kiosk/display/options.hpp"
+
+namespace {
+
+constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2;
+
+int report(const lackwerk::Error& error) {
+  std::fprintf(stderr, "lackwerk-kiosk: %s\n", error.line().c_str());
+  return error.kind == lackwerk::ErrorKind::usage ? exit_usage : exit_failed;
+}
+
+void on_signal(int /*number*/) { lackwerk::kiosk::request_stop(); }
+
+int run(int argc, char** argv) {
+  const auto options = lackwerk::kiosk::parse_options(argc, argv);
+  if (!options) return report(options.error());
+  if (options->help || options->version) {
+    std::fputs(options->help ? lackwerk::kiosk::help_text() : "lackwerk-kiosk 0.1.0\n", stdout);
+    return exit_done;
+  }
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  const auto summary = lackwerk::kiosk::run(*options);
+  if (!summary) return report(summary.error());
+  std::printf("%llu frames, %llu drawn; median %.1f ms a drawn frame (realise and upload %.2f ms); %.2f MB uploaded\n",
+              static_cast<unsigned long long>(summary->frames), static_cast<unsigned long long>(summary->drawn),
+              summary->drawn_ms_median, summary->realise_ms_median,
+              static_cast<double>(summary->uploaded_bytes) * 1e-6);
+  return exit_done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    return report({"", "", error.what(), "please report this"});
+  }
+}

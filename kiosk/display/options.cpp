@@ -1,0 +1,107 @@
+#include "kiosk/display/options.hpp"
+
+#include <getopt.h>
+
+#include <array>
+#include <charconv>
+#include <cstring>
+
+namespace lackwerk::kiosk {
+namespace {
+
+tl::unexpected<Error> usage(std::string option, std::string what, std::string remedy) {
+  return fail("", std::move(option), std::move(what), std::move(remedy), ErrorKind::usage);
+}
+
+enum Option { pack = 1, scene, platform, size, frames, input_script, screenshot, record, help, version };
+
+}  // namespace
+
+const char* help_text() {
+  return "Usage: lackwerk-kiosk --pack PACK.lwp --scene SCENE.lws [options]\n"
+         "Shows a pack's paints on a scene and morphs between them.\n\n"
+         "  --pack PACK.lwp         paints to show (required)\n"
+         "  --scene SCENE.lws       what to show them on (required)\n"
+         "  --platform NAME         surfaceless (EGL, default) or osmesa (software); both draw without a display\n"
+         "  --size WxH              picture size in pixels (default 1280x720)\n"
+         "  --input-script FILE     play a tour (tests/tours/*.tour) instead of waiting for input\n"
+         "  --frames N              run N frames on a virtual clock of 30 a second, then end;\n"
+         "                          without it: real time, until the tour ends or SIGTERM\n"
+         "  --record DIR            write every frame to DIR/000000.png and so on\n"
+         "  --screenshot OUT.png    write the last picture in still quality\n"
+         "  --help, --version\n\n"
+         "Exit codes: 0 done, 1 the run failed, 2 usage.\n";
+}
+
+Result<Options> parse_options(int argc, char** argv) {
+  static constexpr std::array<::option, 11> known{{{"pack", required_argument, nullptr, pack},
+                                                   {"scene", required_argument, nullptr, scene},
+                                                   {"platform", required_argument, nullptr, platform},
+                                                   {"size", required_argument, nullptr, size},
+                                                   {"frames", required_argument, nullptr, frames},
+                                                   {"input-script", required_argument, nullptr, input_script},
+                                                   {"screenshot", required_argument, nullptr, screenshot},
+                                                   {"record", required_argument, nullptr, record},
+                                                   {"help", no_argument, nullptr, help},
+                                                   {"version", no_argument, nullptr, version},
+                                                   {nullptr, 0, nullptr, 0}}};
+  Options options;
+  optind = 0;  // glibc: start afresh, so that tests may parse more than once
+  opterr = 0;
+  for (int found; (found = getopt_long(argc, argv, "", known.data(), nullptr)) != -1;) {
+    switch (found) {
+      case pack:
+        options.pack = optarg;
+        break;
+      case scene:
+        options.scene = optarg;
+        break;
+      case platform:
+        if (std::strcmp(optarg, "surfaceless") == 0)
+          options.backend = gles::Backend::egl_surfaceless;
+        else if (std::strcmp(optarg, "osmesa") == 0)
+          options.backend = gles::Backend::osmesa;
+        else
+          return usage("--platform", "unknown platform '" + std::string(optarg) + "'", "use surfaceless or osmesa");
+        break;
+      case size: {
+        auto parsed = parse_size(optarg);
+        if (!parsed) return tl::unexpected(parsed.error());
+        options.size = *parsed;
+        break;
+      }
+      case frames: {
+        int count = 0;
+        const char* end = optarg + std::strlen(optarg);
+        const auto [at, code] = std::from_chars(optarg, end, count);
+        if (code != std::errc{} || at != end || count < 1 || count > max_frames)
+          return usage("--frames", "'" + std::string(optarg) + "' is not a number of frames", "give 1 to 1000000");
+        options.frames = count;
+        break;
+      }
+      case input_script:
+        options.input_script = optarg;
+        break;
+      case screenshot:
+        options.screenshot = optarg;
+        break;
+      case record:
+        options.record = optarg;
+        break;
+      case help:
+        options.help = true;
+        return options;
+      case version:
+        options.version = true;
+        return options;
+      default:
+        return usage(argv[optind - 1], "unknown option, or its value is missing", "see --help");
+    }
+  }
+  if (optind < argc) return usage(argv[optind], "is not an option", "see --help");
+  if (options.pack.empty()) return usage("--pack", "no paint pack given", "--pack PACK.lwp");
+  if (options.scene.empty()) return usage("--scene", "no scene given", "--scene SCENE.lws");
+  return options;
+}
+
+}  // namespace lackwerk::kiosk

@@ -1,0 +1,49 @@
+// A stage: one context, one framebuffer, one renderer, with a pack and a scene on it.
+//
+// Why it exists: the kiosk and the tools that draw set up the same four things in the same order and must take them
+// down in the reverse one. Owns them all; one GL thread.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/error.hpp"
+#include "packs/paint_pack.hpp"
+#include "packs/scene.hpp"
+#include "render_gles/context.hpp"
+#include "render_gles/framebuffer.hpp"
+#include "render_gles/renderer.hpp"
+
+namespace lackwerk::kiosk {
+
+class Stage {
+ public:
+  /// `width`, `height` in pixels, [16, 8192]. Errors: backend, framebuffer or paint refused by the driver.
+  [[nodiscard]] static Result<std::unique_ptr<Stage>> create(gles::Backend backend, int width, int height,
+                                                             packs::PaintPack pack, packs::Scene scene);
+
+  [[nodiscard]] const packs::PaintPack& pack() const { return pack_; }
+  [[nodiscard]] const packs::Scene& scene() const { return scene_; }
+  [[nodiscard]] gles::Context& context() { return *context_; }
+  [[nodiscard]] gles::Framebuffer& framebuffer() { return *framebuffer_; }
+  [[nodiscard]] gles::Renderer& renderer() { return *renderer_; }
+
+ private:
+  Stage(packs::PaintPack pack, packs::Scene scene) : pack_(std::move(pack)), scene_(std::move(scene)) {}
+
+  packs::PaintPack pack_;
+  packs::Scene scene_;
+  std::unique_ptr<gles::Context> context_;
+  std::unique_ptr<gles::Framebuffer> framebuffer_;
+  std::unique_ptr<gles::Renderer> renderer_;
+};
+
+struct Size {
+  int width = 1280;
+  int height = 720;
+};
+/// "1280x720". Error (usage): not two numbers in [16, 8192].
+[[nodiscard]] Result<Size> parse_size(const std::string& text);
+
+}  // namespace lackwerk::kiosk

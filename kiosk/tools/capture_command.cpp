@@ -1,0 +1,101 @@
+#include <unistd.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "kiosk/tools/commands.hpp"
+#include "kiosk/tools/output.hpp"
+#include "kiosk/tools/progress.hpp"
+#include "packs/tools/virtual_goniometer.hpp"
+
+namespace lackwerk::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CaptureOptions {
+  std::string recipe, out;
+  packs::GoniometerSettings settings;
+  bool json = false;
+};
+
+/// Folders that may hold the recipes that come with the program: the installed one, then a source tree around the
+/// program or the working folder.
+std::vector<fs::path> recipe_folders() {
+  std::vector<fs::path> out;
+  std::error_code code;
+  const fs::path program = fs::read_symlink("/proc/self/exe", code);
+  if (!code) out.push_back(program.parent_path().parent_path() / "share" / "lackwerk" / "recipes");
+  for (fs::path start : {program.parent_path(), fs::current_path(code)})
+    for (; !start.empty(); start = start.parent_path()) {
+      out.push_back(start / "packs" / "recipes");
+      if (start == start.root_path()) break;
+    }
+  return out;
+}
+
+/// A path as it stands, or a bare name found among the recipes that come with the program.
+fs::path find_recipe(const std::string& name) {
+  std::error_code code;
+  if (fs::exists(name, code) || fs::path(name).has_parent_path()) return name;
+  for (const fs::path& folder : recipe_folders())
+    for (const char* ending : {"", ".toml"})
+      if (const fs::path found = folder / (name + ending); fs::is_regular_file(found, code)) return found;
+  return name;
+}
+
+int run_capture(const CaptureOptions& options) {
+  const auto recipe = packs::read_recipe(find_recipe(options.recipe));
+  if (!recipe) return report(recipe.error());
+  Progress progress("capture", options.json);
+  const auto capture = packs::measure(*recipe, options.settings, [&](int done, int total) {
+    progress.update(0.9 * done / total, "slice " + std::to_string(done) + " of " + std::to_string(total));
+  });
+  if (!capture) return report(capture.error());
+  progress.update(0.9, "writing");
+  if (const auto written = packs::write_capture(*capture, options.out); !written) return report(written.error());
+  if (options.json) {
+    const nlohmann::ordered_json out{{"name", capture->identity.name},   {"folder", options.out},
+                                     {"slices", capture->slices.size()}, {"edge_texels", capture->edge_texels},
+                                     {"texel_mm", capture->texel_mm},    {"seconds", progress.elapsed_s()}};
+    print(out.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    return exit_done;
+  }
+  print(options.out + ": " + one_line(capture->identity.name) + ", " + std::to_string(capture->slices.size()) +
+        " slices of " + std::to_string(capture->edge_texels) + " texels, " + fixed(progress.elapsed_s(), 1) + " s");
+  return exit_done;
+}
+
+}  // namespace
+
+void add_capture_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CaptureOptions>();
+  packs::GoniometerSettings& settings = options->settings;
+  settings.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 64u));
+  CLI::App* command = app.add_subcommand("capture", "Virtual goniometer: photographs a recipe into a capture folder");
+  command->add_option("RECIPE", options->recipe, "recipe file, or the name of one that comes with the program")
+      ->required();
+  command->add_option("-o,--output", options->out, "capture folder to write")->required();
+  command->add_option("--edge", settings.edge_texels, "texels per slice edge")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command->add_option("--texel-mm", settings.texel_mm, "edge of a texel on the paint, millimetres")
+      ->check(CLI::Range(0.005, 1.0))
+      ->capture_default_str();
+  command->add_option("--seed", settings.seed, "of the flakes' places")->capture_default_str();
+  command->add_option("--threads", settings.threads, "no effect on the result")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options, &exit_code] { exit_code = run_capture(*options); });
+}
+
+}  // namespace lackwerk::tools

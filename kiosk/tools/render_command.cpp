@@ -1,0 +1,134 @@
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/realise.hpp"
+#include "kiosk/display/mood.hpp"
+#include "kiosk/display/stage.hpp"
+#include "kiosk/display/state.hpp"
+#include "kiosk/tools/commands.hpp"
+#include "kiosk/tools/output.hpp"
+#include "kiosk/tools/render_options.hpp"
+
+namespace lackwerk::tools {
+namespace {
+
+struct RenderOptions {
+  std::string pack, scene = "builtin", weights, lightness, colour, camera, size = "1280x720", backend = "egl",
+                    quality = "still", flakes, out;
+  int samples = 16;
+  bool explain = false, json = false;
+};
+
+/// The three groups from the command line; groups not given follow --weights, which defaults to the first paint.
+Result<core::Weights> read_weights(const RenderOptions& options, const core::InterpolatablePaint& paint) {
+  core::Weights weights = kiosk::first_paint(static_cast<int>(paint.paints.size()));
+  if (!options.weights.empty()) {
+    auto all = parse_weights(options.weights, paint.paints.size(), "--weights");
+    if (!all) return tl::unexpected(all.error());
+    weights = core::Weights::uniform(std::move(*all));
+  }
+  if (!options.lightness.empty()) {
+    auto group = parse_weights(options.lightness, paint.paints.size(), "--lightness");
+    if (!group) return tl::unexpected(group.error());
+    weights.flake_lightness = std::move(*group);
+  }
+  if (!options.colour.empty()) {
+    auto group = parse_weights(options.colour, paint.paints.size(), "--colour");
+    if (!group) return tl::unexpected(group.error());
+    weights.flake_colour = std::move(*group);
+  }
+  if (auto checked = core::check_weights(paint, weights); !checked) {
+    checked.error().kind = ErrorKind::usage;
+    return tl::unexpected(checked.error());
+  }
+  return weights;
+}
+
+gles::Lighting read_lighting(const RenderOptions& options, const packs::Camera& camera) {
+  gles::Lighting lighting = kiosk::lighting_of(kiosk::usual_mood(camera.name));
+  if (options.flakes == "off") lighting.flakes = gles::FlakeMode::off;
+  if (options.flakes == "mean") lighting.flakes = gles::FlakeMode::mean;
+  if (options.flakes == "nearest") lighting.flakes = gles::FlakeMode::nearest;
+  if (options.flakes == "bilinear") lighting.flakes = gles::FlakeMode::bilinear;
+  return lighting;
+}
+
+int run_render(const RenderOptions& options) {
+  const auto backend = parse_backend(options.backend);
+  if (!backend) return report(backend.error());
+  const auto size = kiosk::parse_size(options.size);
+  if (!size) return report(size.error());
+  auto pack = packs::PaintPack::open(options.pack);
+  if (!pack) return report(pack.error());
+  const auto weights = read_weights(options, pack->paint());
+  if (!weights) return report(weights.error());
+  auto scene = load_scene(options.scene);
+  if (!scene) return report(scene.error());
+  const auto camera = find_camera(*scene, options.camera);
+  if (!camera) return report(camera.error());
+  auto stage = kiosk::Stage::create(*backend, size->width, size->height, std::move(*pack), std::move(*scene));
+  if (!stage) return report(stage.error());
+
+  gles::Renderer& renderer = (*stage)->renderer();
+  if (const auto updated = renderer.update(*weights); !updated) return report(updated.error());
+  const gles::View view = gles::View::from(*camera);
+  const gles::Lighting lighting = read_lighting(options, *camera);
+  renderer.prepare(lighting);
+  const auto start = std::chrono::steady_clock::now();
+  const int samples = options.quality == "still" ? options.samples : 1;
+  const gles::Image image = renderer.still(view, lighting, (*stage)->framebuffer(), samples);
+  const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  if (const auto written = gles::write_png(image, options.out); !written) return report(written.error());
+
+  if (options.json) {
+    nlohmann::ordered_json out{{"out", options.out},
+                               {"backend", gles::backend_name(*backend)},
+                               {"renderer", (*stage)->context().info().renderer},
+                               {"width", size->width},
+                               {"height", size->height},
+                               {"samples", samples},
+                               {"render_ms", ms}};
+    if (options.explain) out["explain"] = renderer.explain();
+    print(out.dump());
+    return exit_done;
+  }
+  print(options.out + ": " + options.size + ", " + std::to_string(samples) +
+        (samples == 1 ? " sample, " : " samples, ") + fixed(ms, 0) + " ms on " + (*stage)->context().info().renderer);
+  if (options.explain)
+    for (const std::string& line : renderer.explain()) print("  " + line);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = app.add_subcommand("render", "a picture of a scene in a mix of a pack's paints");
+  command->add_option("--pack", options->pack, "paint pack (.lwp)")->required();
+  command->add_option("--scene", options->scene, "scene pack (.lws), or builtin, sphere, capsule")
+      ->capture_default_str();
+  command->add_option("--weights", options->weights, "one number per paint, sum 1: 0.2,0.3,0.5 (default: the first)");
+  command->add_option("--lightness", options->lightness, "weights of the flakes' lightness alone");
+  command->add_option("--colour", options->colour, "weights of the flakes' colour alone");
+  command->add_option("--camera", options->camera, "a camera of the scene (default: its first)");
+  command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  command->add_option("--backend", options->backend, "egl or osmesa")->capture_default_str();
+  command->add_option("--quality", options->quality, "moving: one sample a pixel; still: --samples of them")
+      ->check(CLI::IsMember({"moving", "still"}))
+      ->capture_default_str();
+  command->add_option("--samples", options->samples, "samples a pixel of still quality")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--flakes", options->flakes, "off, mean, nearest or bilinear (default)")
+      ->check(CLI::IsMember({"off", "mean", "nearest", "bilinear"}));
+  command->add_option("-o,--out", options->out, "PNG to write")->required();
+  command->add_flag("--explain", options->explain, "print what was left out, and why");
+  command->add_flag("--json", options->json, "print JSON");
+  command->callback([options, &exit_code] { exit_code = run_render(*options); });
+}
+
+}  // namespace lackwerk::tools
