@@ -1,0 +1,176 @@
+#include "packs/scene_pack.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "packs/scene_pack_generated.h"
+#include "tests/unit/pack_samples.hpp"
+
+namespace lackwerk::packs {
+namespace {
+
+using testing::sample_scene;
+using testing::TemporaryFolder;
+
+float distance(const glm::vec3& a, const glm::vec3& b) { return glm::length(a - b); }
+
+TEST(ScenePack, ComesBack) {
+  const TemporaryFolder folder;
+  const Scene scene = sample_scene();
+  ASSERT_TRUE(write_scene_pack(folder / "s.lws", scene));
+  for (const Backing backing : {Backing::map, Backing::copy}) {
+    const auto back = read_scene_pack(folder / "s.lws", backing);
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(back->name, scene.name);
+    ASSERT_EQ(back->parts.size(), scene.parts.size());
+    for (std::size_t k = 0; k < scene.parts.size(); ++k) {
+      EXPECT_EQ(back->parts[k].name, scene.parts[k].name);
+      EXPECT_EQ(back->parts[k].kind, scene.parts[k].kind);
+      EXPECT_EQ(back->parts[k].positions_mm, scene.parts[k].positions_mm);
+      EXPECT_EQ(back->parts[k].ambient_occlusion, scene.parts[k].ambient_occlusion);
+      EXPECT_EQ(back->parts[k].indices, scene.parts[k].indices);
+      for (std::size_t v = 0; v < scene.parts[k].normals.size(); ++v) {
+        EXPECT_LT(distance(back->parts[k].normals[v], scene.parts[k].normals[v]), 4e-5f);
+        EXPECT_NEAR(glm::length(back->parts[k].normals[v]), 1.0f, 1e-6f);
+      }
+    }
+    ASSERT_EQ(back->cameras.size(), 2u);
+    EXPECT_EQ(back->cameras[1].name, "side");
+    EXPECT_EQ(back->cameras[1].eye_mm, scene.cameras[1].eye_mm);
+    EXPECT_EQ(back->cameras[1].vertical_fov_deg, 25.5f);
+  }
+}
+
+/// A strip of `quads` quads, which share their vertices.
+MeshPart strip(std::uint32_t quads) {
+  MeshPart part;
+  part.name = "strip";
+  part.kind = SurfaceKind::trim;
+  for (std::uint32_t k = 0; k <= quads; ++k)
+    for (int side = 0; side < 2; ++side) {
+      part.positions_mm.emplace_back(0.01f * static_cast<float>(k), static_cast<float>(side), 0.0f);
+      part.normals.emplace_back(0.0f, 0.0f, 1.0f);
+      part.ambient_occlusion.push_back(static_cast<std::uint8_t>(k % 256));
+    }
+  for (std::uint32_t k = 0; k < quads; ++k)
+    for (const std::uint32_t corner : {0u, 2u, 3u, 0u, 3u, 1u}) part.indices.push_back(2 * k + corner);
+  return part;
+}
+
+TEST(ScenePack, LargePartsAreSplitWithoutChange) {
+  const TemporaryFolder folder;
+  Scene scene = sample_scene();
+  scene.parts = {strip(100'000)};
+  ASSERT_TRUE(write_scene_pack(folder / "s.lws", scene));
+  const auto back = read_scene_pack(folder / "s.lws");
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_GE(back->parts.size(), 4u);
+  const MeshPart& whole = scene.parts[0];
+  std::size_t corner = 0;
+  for (const MeshPart& part : back->parts) {
+    EXPECT_LE(part.positions_mm.size(), max_part_vertices);
+    EXPECT_EQ(part.kind, SurfaceKind::trim);
+    for (const std::uint32_t index : part.indices) {
+      const std::uint32_t original = whole.indices[corner++];
+      ASSERT_EQ(part.positions_mm[index], whole.positions_mm[original]);
+      ASSERT_EQ(part.ambient_occlusion[index], whole.ambient_occlusion[original]);
+    }
+  }
+  EXPECT_EQ(corner, whole.indices.size());
+}
+
+TEST(ScenePack, EveryFlippedBitAndTruncationIsRefused) {
+  const TemporaryFolder folder;
+  const auto path = folder / "s.lws";
+  ASSERT_TRUE(write_scene_pack(path, sample_scene()));
+  testing::BitFlipper file(path);
+  for (std::size_t bit = 0; bit < file.size_bits(); ++bit) {
+    file.flip(bit);
+    ASSERT_FALSE(read_scene_pack(path, Backing::copy)) << "bit " << bit;
+    file.flip(bit);
+  }
+  std::printf("%zu single-bit flips of a scene of %zu bytes, all refused\n", file.size_bits(), file.size_bits() / 8);
+  const std::vector<char> bytes = testing::read_bytes(path);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    testing::write_bytes(path, bytes.data(), size);
+    ASSERT_FALSE(read_scene_pack(path)) << size;
+  }
+}
+
+TEST(ScenePack, SoundFilesWithoutSenseAreRefusedByField) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  struct Bad {
+    const char* field;
+    std::function<void(Scene&)> spoil;
+  };
+  const std::vector<Bad> cases = {
+      {"parts", [](Scene& s) { s.parts.clear(); }},
+      {"parts[0].positions[1]", [](Scene& s) { s.parts[0].positions_mm[1].y = nan; }},
+      {"parts[0].positions[3]", [](Scene& s) { s.parts[0].positions_mm[3].z = 1e7f; }},
+      {"parts[0].normals", [](Scene& s) { s.parts[0].normals.pop_back(); }},
+      {"parts[0].ambient_occlusion", [](Scene& s) { s.parts[0].ambient_occlusion.pop_back(); }},
+      {"parts[1].indices[2]", [](Scene& s) { s.parts[1].indices[2] = 3; }},
+      {"parts[1].indices", [](Scene& s) { s.parts[1].indices.push_back(0); }},
+      {"parts[1]", [](Scene& s) { s.parts[1].indices.clear(); }},
+      {"parts[1].kind", [](Scene& s) { s.parts[1].kind = static_cast<SurfaceKind>(surface_kind_count); }},
+      {"views[1].vertical_fov_deg", [](Scene& s) { s.cameras[1].vertical_fov_deg = 120.0f; }},
+      {"views[1].vertical_fov_deg", [](Scene& s) { s.cameras[1].vertical_fov_deg = nan; }},
+      {"views[0]", [](Scene& s) { s.cameras[0].target_mm = s.cameras[0].eye_mm; }},
+      {"views[0]", [](Scene& s) { s.cameras[0].eye_mm.x = nan; }},
+      {"views[0].name", [](Scene& s) { s.cameras[0].name.clear(); }},
+  };
+  const TemporaryFolder folder;
+  const auto path = folder / "s.lws";
+  for (const Bad& bad : cases) {
+    Scene scene = sample_scene();
+    bad.spoil(scene);
+    ASSERT_TRUE(write_sealed_file(path, SealedKind::scene, encode_scene_pack(scene)));
+    const auto back = read_scene_pack(path);
+    ASSERT_FALSE(back) << bad.field;
+    EXPECT_EQ(back.error().field, bad.field) << back.error().line();
+    EXPECT_FALSE(write_scene_pack(path, scene)) << bad.field;
+  }
+}
+
+TEST(ScenePack, NormalsMustHaveUnitLength) {
+  // In the file: one stored normal is set to half length, under a correct digest.
+  std::vector<std::uint8_t> payload = encode_scene_pack(sample_scene());
+  const auto* part = fb::GetScenePack(payload.data())->parts()->Get(0);
+  auto* normal = const_cast<std::uint8_t*>(part->normals()->Data());
+  const std::int16_t half = 16384;
+  std::memcpy(normal + 4, &half, sizeof half);
+  const auto back = decode_scene_pack(payload, "s.lws");
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().field, "parts[0].normals[0]");
+  // In memory: the writer refuses.
+  Scene scene = sample_scene();
+  scene.parts[0].normals[2] = {0, 0, 0};
+  const TemporaryFolder folder;
+  EXPECT_FALSE(write_scene_pack(folder / "s.lws", scene));
+}
+
+TEST(ScenePack, TooMuchIsRefusedBeforeItIsCopied) {
+  // Four thousand parts that all name one vector: a small file that would take gigabytes.
+  flatbuffers::FlatBufferBuilder out;
+  const auto name = out.CreateString("x");
+  std::vector<fb::Point> points(60000, fb::Point(0, 0, 0));
+  std::vector<fb::UnitVector> unit(60000, fb::UnitVector(0, 0, 32767));
+  const auto positions = out.CreateVectorOfStructs(points);
+  const auto normals = out.CreateVectorOfStructs(unit);
+  const auto occlusion = out.CreateVector(std::vector<std::uint8_t>{});
+  const auto indices = out.CreateVector(std::vector<std::uint16_t>{0, 1, 2});
+  const auto part = fb::CreatePart(out, name, 0, positions, normals, occlusion, indices);
+  const auto parts = out.CreateVector(std::vector<flatbuffers::Offset<fb::Part>>(4000, part));
+  const auto views = out.CreateVector(std::vector<flatbuffers::Offset<fb::View>>{});
+  fb::FinishScenePackBuffer(out, fb::CreateScenePack(out, 1, 1, name, name, parts, views));
+  const auto back = decode_scene_pack({out.GetBufferPointer(), out.GetSize()}, "s.lws");
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().field, "positions");
+}
+
+}  // namespace
+}  // namespace lackwerk::packs
