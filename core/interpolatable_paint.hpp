@@ -66,7 +66,7 @@ struct Weights {
   std::vector<double> flake_lightness;  ///< L of the flakes
   std::vector<double> flake_colour;     ///< a and b of the flakes
   /// The same weights in all three groups.
-  [[nodiscard]] static Weights uniform(std::vector<double> w) { return {w, w, w}; }
+  [[nodiscard]] static Weights uniform(const std::vector<double>& w) { return {w, w, w}; }
   bool operator==(const Weights&) const = default;
 };
 

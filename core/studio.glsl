@@ -1,7 +1,7 @@
 // The built-in studio, written once for shader and CPU (same rules as paint_model.glsl).
 //
-// A dark hall with five soft boxes: a long one overhead, a panel along each flank, one before the nose and one behind
-// the tail, and a floor with a pool of light. It is a function, not a picture: nothing to download, and a rough lobe
+// A dark hall: a long soft box overhead between two slim bright tubes, a panel along each flank, a box before the nose
+// and one behind the tail, and a floor with a pool of light. It is a function, not a picture: nothing to download, and a rough lobe
 // can ask for it already blurred. Lengths in mm, axes as in packs/scene.hpp. Radiances are relative to the exposure.
 //
 // From the surroundings: u_studio_gain (0 switches the studio off), u_floor_shadow (half length and half width of what
@@ -29,13 +29,15 @@ vec3 studio_radiance(vec3 p, vec3 d, real blur) {
   real horizon = exp2(R(-10.0) * up * up / (R(1.0) + R(6.0) * blur));
   vec3 sum = vec3(R(0.030), R(0.033), R(0.038)) + vec3(R(0.085), R(0.090), R(0.100)) * horizon;
 
-  // Overhead box: 6.4 m x 1.9 m at 3.3 m, cool white; the brightest thing in the room.
+  // Overhead, 3.3 m high and 6.4 m long, cool white: a box 1.5 m wide, and beside it two tubes of 0.24 m, the brightest
+  // things in the room. The tubes are what draws a crisp line along a shoulder: a coat mirrors only 4 % of them.
   real tz = (R(3300.0) - p.z) / max(d.z, R(0.03));
-  real wz = R(160.0) + tz * blur;
+  real wz = tz * blur;
   vec3 qz = p + d * tz;
-  real over = soft_box(qz.x, R(3200.0), wz * R(1.6)) * soft_box(qz.y, R(950.0), wz);
-  over *= soft_step((d.z - R(0.05)) / (R(0.05) + blur));
-  sum += vec3(R(3.6), R(3.75), R(3.9)) * over;
+  real ahead = soft_box(qz.x, R(3200.0), R(260.0) + wz * R(1.6)) * soft_step((d.z - R(0.05)) / (R(0.05) + blur));
+  real over = R(2.6) * soft_box(qz.y, R(750.0), R(140.0) + wz);
+  over += R(13.0) * soft_box(abs(qz.y) - R(1650.0), R(120.0), R(35.0) + wz);
+  sum += vec3(R(0.97), R(1.0), R(1.03)) * (over * ahead);
 
   // Flank panels: 7.6 m long, 0.7 m to 1.9 m high, 4.6 m from the middle; the left one (y > 0) is the key.
   real side = d.y < R(0.0) ? R(-1.0) : R(1.0);

@@ -1,6 +1,7 @@
 #include "packs/paint_pack_codec.hpp"
 
 #include <bit>
+#include <type_traits>
 
 #include "packs/paint_pack_generated.h"
 
@@ -9,8 +10,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "spans point straight into little-endian FlatBuffers");
 static_assert(sizeof(fb::Cuboid) == sizeof(core::QuantisedCuboid) &&
-              alignof(fb::Cuboid) == alignof(core::QuantisedCuboid));
-static_assert(sizeof(fb::Rgb32) == sizeof(glm::vec3) && alignof(fb::Rgb32) == alignof(glm::vec3));
+              std::alignment_of_v<fb::Cuboid> == std::alignment_of_v<core::QuantisedCuboid>);
+static_assert(sizeof(fb::Rgb32) == sizeof(glm::vec3) &&
+              std::alignment_of_v<fb::Rgb32> == std::alignment_of_v<glm::vec3>);
 
 // A pack has a root, and a paint, a colour table and an error table per paint; strings and vectors are no tables.
 constexpr flatbuffers::uoffset_t max_depth = 8, max_tables = 64;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <type_traits>
 #include <unordered_map>
 
 #include "packs/paint_pack.hpp"
@@ -11,7 +12,8 @@
 namespace lackwerk::packs {
 namespace {
 
-static_assert(sizeof(fb::Point) == sizeof(glm::vec3) && alignof(fb::Point) == alignof(glm::vec3));
+static_assert(sizeof(fb::Point) == sizeof(glm::vec3) &&
+              std::alignment_of_v<fb::Point> == std::alignment_of_v<glm::vec3>);
 static_assert(sizeof(fb::UnitVector) == 6);
 
 constexpr flatbuffers::uoffset_t max_depth = 4, max_tables = max_scene_parts + max_scene_cameras + 1;

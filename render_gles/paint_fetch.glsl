@@ -31,11 +31,6 @@ vec3 fetch_chi(float u, float v) {
 
 #if HAS_FLAKES
 uniform sampler2D u_mean;
-uniform sampler2D u_slice;
-uniform sampler2D u_rank;
-uniform sampler2D u_corner;
-uniform sampler2D u_random;
-uniform vec2 u_corner_size;  // texels: 3 width, rows (the rank table has as many rows)
 uniform float u_slice_count;
 uniform float u_level_count;
 uniform float u_bins_per_rad;
@@ -53,10 +48,25 @@ vec3 fetch_mean(float bin_h, float bin_i) {
   float exponent = floor(t.w * 255.0 + 0.5);
   return exponent > 0.5 ? t.xyz * exp2(exponent - 128.0) : vec3(0.0);
 }
+#if FLAKE_LIGHTS > 0
+uniform sampler2D u_slice;
+uniform sampler2D u_rank;
+uniform sampler2D u_corner;
+uniform sampler2D u_random;
+uniform vec2 u_corner_size;  // texels: 3 width, rows (the rank table has as many rows)
+
 vec4 fetch_slice(float bin_h, float bin_i) { return texture2D(u_slice, (vec2(bin_h, bin_i) + 0.5) / ANGLE_GRID); }
 vec4 fetch_rank(float step_index, float row) {
   return texture2D(u_rank, vec2((step_index + 0.5) / RANK_STEPS, (row + 0.5) / u_corner_size.y));
 }
 vec4 fetch_corner(float x, float row) { return texture2D(u_corner, (vec2(x, row) + 0.5) / u_corner_size); }
 vec4 fetch_random(float x, float y) { return texture2D(u_random, (vec2(x, y) + 0.5) / RANDOM_EDGE); }
+#else
+// No light shows single flakes. A compiler may still not see that their code is dead (Mesa does not unroll the loop
+// over lights, which made the mean as dear as the flakes); "no slice anywhere" removes it for certain.
+vec4 fetch_slice(float bin_h, float bin_i) { return vec4(0.0, 1.0, 0.0, 0.0); }
+vec4 fetch_rank(float step_index, float row) { return vec4(0.0); }
+vec4 fetch_corner(float x, float row) { return vec4(0.0); }
+vec4 fetch_random(float x, float y) { return vec4(0.0); }
+#endif
 #endif

@@ -34,7 +34,7 @@ struct Features {
   int flake_lights = 0;  ///< how many of them show single flakes; the others show the mean
   bool stripes = false;
   bool studio = false;
-  auto operator<=>(const Features&) const = default;
+  auto operator<=>(const Features&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
 
   /// The same picture with the fewest switches on: equal pictures share one program.
   [[nodiscard]] Features canonical() const;

@@ -113,12 +113,12 @@ vec4 shade(vec3 n, vec3 o, vec3 p, float open, float distance_mm) {
 #elif SURFACE == 8  // interior
   return vec4(vec3(0.02) * (studio_radiance(p, n, 1.2) + lamps(n)) * open, 1.0);
 #else  // floor: polished dark concrete in a pool of light, fading into the hall
-  float radius = length(p.xy * vec2(0.72, 1.0));
+  float radius = length(p.xy);
   vec3 matt = vec3(0.115, 0.114, 0.112) * (studio_radiance(p + vec3(0.0, 0.0, 5.0), n, 1.2) + 0.6 * lamps(n));
   float ff = gloss_fresnel(n, o, 0.04);
   vec3 shine = studio_radiance(p + vec3(0.0, 0.0, 5.0), r, 0.16) * (ff * 0.55);
   vec3 lit = (matt * open * open + shine * open) * u_exposure;
-  float fade = smoothstep(2600.0, 6600.0, radius);
+  float fade = smoothstep(2800.0, 6700.0, radius);
   return vec4(mix(lit, u_backdrop, fade) / u_exposure, 1.0);
 #endif
 }

@@ -103,13 +103,14 @@ double cdf_integral(double lo, double hi, double x) {
 }
 
 /// The distance of both distributions projected to one axis, from below: sum over grid cells of |integral of F - G|.
-double projected_bound(std::span<const glm::vec3> texels, std::span<const LabCuboid> clusters, int axis) {
+double projected_bound(std::span<const glm::vec3> texels, std::span<const LabCuboid> clusters,
+                       std::span<const LabCuboid> stored, int axis) {
   constexpr std::size_t cells = 1024;
   double lo = std::numeric_limits<double>::max();
   double hi = std::numeric_limits<double>::lowest();
-  for (const LabCuboid& cluster : clusters) {
-    lo = std::min(lo, static_cast<double>(cluster.lo[axis]));
-    hi = std::max(hi, static_cast<double>(cluster.hi[axis]));
+  for (const LabCuboid& box : stored) {
+    lo = std::min(lo, static_cast<double>(box.lo[axis]));
+    hi = std::max(hi, static_cast<double>(box.hi[axis]));
   }
   for (const glm::vec3& texel : texels) {  // stored boxes need not hold every texel
     lo = std::min(lo, static_cast<double>(texel[axis]));
@@ -134,9 +135,9 @@ double projected_bound(std::span<const glm::vec3> texels, std::span<const LabCub
     below += count[cell];
     double integral = 0.0;
     const double edge = lo + width * static_cast<double>(cell + 1);
-    for (const LabCuboid& cluster : clusters)
-      integral += cluster.count / total *
-                  cdf_integral(static_cast<double>(cluster.lo[axis]), static_cast<double>(cluster.hi[axis]), edge);
+    for (std::size_t c = 0; c < clusters.size(); ++c)
+      integral += clusters[c].count / total *
+                  cdf_integral(static_cast<double>(stored[c].lo[axis]), static_cast<double>(stored[c].hi[axis]), edge);
     bound += std::abs(texel_integral - (integral - last));
     last = integral;
   }
@@ -172,7 +173,8 @@ WassersteinBounds wasserstein1_bounds(std::span<const glm::vec3> texels_lab, std
   check_equal(stored.size(), clusters.size(), "stored clusters");
   WassersteinBounds bounds;
   bounds.upper = coupling_bound(texels_lab, clusters, stored, most_texels);
-  for (int axis = 0; axis < 3; ++axis) bounds.lower = std::max(bounds.lower, projected_bound(texels_lab, stored, axis));
+  for (int axis = 0; axis < 3; ++axis)
+    bounds.lower = std::max(bounds.lower, projected_bound(texels_lab, clusters, stored, axis));
   bounds.upper = std::max(bounds.upper, bounds.lower);  // the selection may have been a lucky one
   return bounds;
 }

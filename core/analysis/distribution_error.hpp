@@ -28,7 +28,8 @@ struct WassersteinBounds {
 
 /// `clusters` must be the partition of exactly these texels (cluster_texels's answer: each texel in one box, counts
 /// matching; anything else aborts). `stored`, if not empty, are the same clusters as they are reconstructed (quantised
-/// boxes, in the same order). Clusters of more texels than `most_texels` are judged by an even selection.
+/// boxes, in the same order; their counts are not read). Clusters of more texels than `most_texels` are judged by an
+/// even selection.
 [[nodiscard]] WassersteinBounds wasserstein1_bounds(std::span<const glm::vec3> texels_lab,
                                                     std::span<const LabCuboid> clusters,
                                                     std::span<const LabCuboid> stored = {},

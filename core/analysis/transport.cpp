@@ -1,7 +1,7 @@
 #include "core/analysis/transport.hpp"
 
 #include <lemon/network_simplex.h>
-#include <lemon/smart_graph.h>
+#include <lemon/static_graph.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace lackwerk::core {
 
 namespace {
 
-using Graph = lemon::SmartDigraph;
+using Graph = lemon::StaticDigraph;
 using Simplex = lemon::NetworkSimplex<Graph, std::int64_t, std::int64_t>;
 
 constexpr std::int64_t most_mass = std::int64_t{1} << 62;
@@ -77,9 +77,9 @@ std::vector<std::int64_t> scaled_costs(const Side& source, const Side& target) {
   }
   int exponent = 0;
   std::frexp(largest, &exponent);
+  const double scale = std::ldexp(1.0, cost_bits - std::max(exponent, -900));  // finite for the tiniest costs too
   std::vector<std::int64_t> scaled(cost.size());
-  std::transform(cost.begin(), cost.end(), scaled.begin(),
-                 [&](double c) { return std::llround(std::ldexp(c, cost_bits - exponent)); });
+  std::transform(cost.begin(), cost.end(), scaled.begin(), [&](double c) { return std::llround(c * scale); });
   return scaled;
 }
 
@@ -87,18 +87,19 @@ std::vector<std::int64_t> scaled_costs(const Side& source, const Side& target) {
 std::vector<PlanEntry> solve_groups(const Side& source, const Side& target, const std::vector<std::int64_t>& cost,
                                     TransportPlan& plan) {
   const std::size_t columns = target.groups.size();
+  std::vector<std::pair<int, int>> arcs;  // arc id = place in `cost`
+  for (std::size_t s = 0; s < source.groups.size(); ++s)
+    for (std::size_t t = 0; t < columns; ++t)
+      arcs.emplace_back(static_cast<int>(s), static_cast<int>(source.groups.size() + t));
   Graph graph;
-  graph.reserveNode(static_cast<int>(source.groups.size() + columns));
-  graph.reserveArc(static_cast<int>(cost.size()));
-  for (std::size_t i = 0; i < source.groups.size() + columns; ++i) graph.addNode();
-  const auto from = [&](std::size_t s) { return graph.nodeFromId(static_cast<int>(s)); };
-  const auto to = [&](std::size_t t) { return graph.nodeFromId(static_cast<int>(source.groups.size() + t)); };
+  graph.build(static_cast<int>(source.groups.size() + columns), arcs.begin(), arcs.end());
+  const auto from = [&](std::size_t s) { return Graph::nodeFromId(static_cast<int>(s)); };
+  const auto to = [&](std::size_t t) { return Graph::nodeFromId(static_cast<int>(source.groups.size() + t)); };
   Graph::NodeMap<std::int64_t> supply(graph);
   Graph::ArcMap<std::int64_t> arc_cost(graph);
   for (std::size_t s = 0; s < source.groups.size(); ++s) supply[from(s)] = source.groups[s].mass;
   for (std::size_t t = 0; t < columns; ++t) supply[to(t)] = -target.groups[t].mass;
-  for (std::size_t s = 0; s < source.groups.size(); ++s)
-    for (std::size_t t = 0; t < columns; ++t) arc_cost[graph.addArc(from(s), to(t))] = cost[s * columns + t];
+  for (std::size_t i = 0; i < cost.size(); ++i) arc_cost[Graph::arcFromId(static_cast<int>(i))] = cost[i];
 
   Simplex simplex(graph);
   simplex.supplyMap(supply).costMap(arc_cost);
@@ -106,7 +107,7 @@ std::vector<PlanEntry> solve_groups(const Side& source, const Side& target, cons
 
   std::vector<PlanEntry> entries;
   for (std::size_t i = 0; i < cost.size(); ++i) {
-    const std::int64_t mass = simplex.flow(graph.arcFromId(static_cast<int>(i)));
+    const std::int64_t mass = simplex.flow(Graph::arcFromId(static_cast<int>(i)));
     if (mass == 0) continue;
     entries.push_back({static_cast<std::uint32_t>(i / columns), static_cast<std::uint32_t>(i % columns), mass});
     plan.primal += Int128{mass} * cost[i];

@@ -23,8 +23,8 @@ gles::Lighting lighting_of(Mood mood) {
     case Mood::showroom:
       break;
     case Mood::sun:
-      lighting.lights = {spot({0.45f, 0.55f, 0.90f}, {1.6f, 1.55f, 1.45f})};
-      lighting.studio_gain = 0.45f;
+      lighting.lights = {spot({0.45f, 0.55f, 0.90f}, {0.95f, 0.92f, 0.86f})};
+      lighting.studio_gain = 0.25f;
       break;
     case Mood::stripes:
       lighting.stripes = true;

@@ -51,8 +51,8 @@ void State::orbit(double azimuth_deg, double elevation_deg) {
       std::clamp(glm::degrees(std::asin(from_target.z / distance)) + static_cast<float>(elevation_deg),
                  lowest_elevation_deg, highest_elevation_deg);
   const float e = glm::radians(elevation);
-  camera_.eye_mm = camera_.target_mm + distance * glm::vec3(std::cos(e) * std::cos(azimuth),
-                                                            std::cos(e) * std::sin(azimuth), std::sin(e));
+  camera_.eye_mm = camera_.target_mm +
+                   distance * glm::vec3(std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), std::sin(e));
   camera_.eye_mm.z = std::max(camera_.eye_mm.z, lowest_eye_mm);
 }
 
@@ -87,8 +87,8 @@ State::Changes State::apply(const input::Control& event) {
       changes.weights = set_weights(weights_.flake_colour, event.values);
       break;
     case ControlKind::camera: {
-      const auto found = std::find_if(cameras_.begin(), cameras_.end(),
-                                      [&](const packs::Camera& c) { return c.name == event.name; });
+      const auto found =
+          std::find_if(cameras_.begin(), cameras_.end(), [&](const packs::Camera& c) { return c.name == event.name; });
       if (found == cameras_.end()) break;
       changes.view = found->eye_mm != camera_.eye_mm || found->target_mm != camera_.target_mm ||
                      found->vertical_fov_deg != camera_.vertical_fov_deg;

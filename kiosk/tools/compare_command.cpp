@@ -16,10 +16,15 @@ struct CompareOptions {
   bool json = false;
 };
 
+Result<packs::LinearImage> read_quietly(const std::string& path) {
+  const QuietStderr quiet;
+  return packs::read_image(path);
+}
+
 int run_compare(const CompareOptions& options) {
-  const auto a = packs::read_image(options.a);
+  const auto a = read_quietly(options.a);
   if (!a) return report(a.error());
-  const auto b = packs::read_image(options.b);
+  const auto b = read_quietly(options.b);
   if (!b) return report(b.error());
   std::vector<float> map;
   auto difference = packs::compare_images(*a, *b, &map);

@@ -1,5 +1,8 @@
 #include "kiosk/tools/output.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 
 namespace lackwerk::tools {
@@ -15,6 +18,21 @@ std::string one_line(std::string_view text) {
 int report(const Error& error) {
   std::fputs(("lackwerk: " + one_line(error.line()) + "\n").c_str(), stderr);
   return error.kind == ErrorKind::usage ? exit_usage : exit_failed;
+}
+
+QuietStderr::QuietStderr() : saved_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3)) {
+  const int nowhere = saved_ >= 0 ? ::open("/dev/null", O_WRONLY | O_CLOEXEC) : -1;
+  if (nowhere < 0) return;
+  std::fflush(stderr);
+  ::dup2(nowhere, STDERR_FILENO);
+  ::close(nowhere);
+}
+
+QuietStderr::~QuietStderr() {
+  if (saved_ < 0) return;
+  std::fflush(stderr);
+  ::dup2(saved_, STDERR_FILENO);
+  ::close(saved_);
 }
 
 void print(std::string_view line) {

@@ -19,6 +19,19 @@ inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2;
 /// Prints "lackwerk: file: field: what (remedy)" on stderr, one line whatever the texts hold. Returns the exit code.
 [[nodiscard]] int report(const Error& error);
 
+/// Sends stderr to nowhere while it lives: libpng prints its own complaints there, and an error is to be one line. For
+/// the main thread around one library call; nothing else may be printing.
+class QuietStderr {
+ public:
+  QuietStderr();
+  ~QuietStderr();
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
+
+ private:
+  int saved_;
+};
+
 /// Prints a line on stdout.
 void print(std::string_view line);
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/realise.hpp"
 #include "kiosk/display/mood.hpp"
@@ -17,8 +18,8 @@ namespace lackwerk::tools {
 namespace {
 
 struct RenderOptions {
-  std::string pack, scene = "builtin", weights, lightness, colour, camera, size = "1280x720", backend = "egl",
-                    quality = "still", flakes, out;
+  std::string pack, scene = "builtin", camera, size = "1280x720", backend = "egl", quality = "still", flakes, out;
+  std::optional<std::string> weights, lightness, colour;  ///< given but empty is a mistake, not a default
   int samples = 16;
   bool explain = false, json = false;
 };
@@ -26,18 +27,18 @@ struct RenderOptions {
 /// The three groups from the command line; groups not given follow --weights, which defaults to the first paint.
 Result<core::Weights> read_weights(const RenderOptions& options, const core::InterpolatablePaint& paint) {
   core::Weights weights = kiosk::first_paint(static_cast<int>(paint.paints.size()));
-  if (!options.weights.empty()) {
-    auto all = parse_weights(options.weights, paint.paints.size(), "--weights");
+  if (options.weights) {
+    auto all = parse_weights(*options.weights, paint.paints.size(), "--weights");
     if (!all) return tl::unexpected(all.error());
     weights = core::Weights::uniform(std::move(*all));
   }
-  if (!options.lightness.empty()) {
-    auto group = parse_weights(options.lightness, paint.paints.size(), "--lightness");
+  if (options.lightness) {
+    auto group = parse_weights(*options.lightness, paint.paints.size(), "--lightness");
     if (!group) return tl::unexpected(group.error());
     weights.flake_lightness = std::move(*group);
   }
-  if (!options.colour.empty()) {
-    auto group = parse_weights(options.colour, paint.paints.size(), "--colour");
+  if (options.colour) {
+    auto group = parse_weights(*options.colour, paint.paints.size(), "--colour");
     if (!group) return tl::unexpected(group.error());
     weights.flake_colour = std::move(*group);
   }

@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -14,13 +15,23 @@
 namespace lackwerk::tools {
 namespace {
 
+constexpr int default_rays = 128;
+
 struct SceneOptions {
   std::string model, out;
-  int rays = 128;
+  int rays = default_rays;
+  bool rays_given = false;
   float radius_mm = 100.0f;
   float length_mm = 300.0f;
   bool json = false;
 };
+
+/// The car comes with its occlusion; it is only traced again when asked for.
+bool wants_occlusion(const packs::Scene& scene, const SceneOptions& options) {
+  const bool baked = std::all_of(scene.parts.begin(), scene.parts.end(),
+                                 [](const packs::MeshPart& part) { return !part.ambient_occlusion.empty(); });
+  return options.rays > 0 && (options.rays_given || !baked);
+}
 
 packs::Scene build(const SceneOptions& options) {
   if (options.model == "sphere") return packs::build_sphere(options.radius_mm);
@@ -33,7 +44,7 @@ int run_scene(const SceneOptions& options) {
   progress.update(0.0, options.model);
   packs::Scene scene = build(options);
   progress.update(0.5, "ambient occlusion");
-  if (options.rays > 0) packs::bake_ambient_occlusion(scene, options.rays);
+  if (wants_occlusion(scene, options)) packs::bake_ambient_occlusion(scene, options.rays);
   progress.update(0.95, "writing");
   if (const auto written = packs::write_scene_pack(options.out, scene); !written) return report(written.error());
   // Read back: what was promised is what a kiosk will get.
@@ -66,9 +77,9 @@ void add_scene_command(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::IsMember({"builtin", "sphere", "capsule"}));
   command->add_option("-o,--output", options->out, "scene pack to write (.lws)")->required();
-  command->add_option("--occlusion-rays", options->rays, "rays per vertex for ambient occlusion, 0 = none")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
+  CLI::Option* rays =
+      command->add_option("--occlusion-rays", options->rays, "rays per vertex for ambient occlusion; 0 = trace none");
+  rays->check(CLI::Range(0, 4096))->capture_default_str();
   command->add_option("--radius-mm", options->radius_mm, "of sphere and capsule")
       ->check(CLI::Range(1.0, 10000.0))
       ->capture_default_str();
@@ -76,7 +87,10 @@ void add_scene_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1.0, 10000.0))
       ->capture_default_str();
   command->add_flag("--json", options->json, "print JSON");
-  command->callback([options, &exit_code] { exit_code = run_scene(*options); });
+  command->callback([options, rays, &exit_code] {
+    options->rays_given = rays->count() > 0;
+    exit_code = run_scene(*options);
+  });
 }
 
 }  // namespace lackwerk::tools

@@ -5,7 +5,7 @@
 //
 // Keys (docs/capture.md explains them with units): name, source, provenance, coat_provenance, coat_ior,
 // refraction_ior, diffuse, [[lobe]] s m f0, [flakes] provenance share coverage diameter_um diameter_spread
-// diameter_max_um, [film] layers table_nodes; or base, replace_lobe, coat_ior to derive a coated paint.
+// diameter_max_um, [film] resin_ior table_nodes layer; or base, replace_lobe, coat_ior to derive a coated paint.
 #pragma once
 
 #include <filesystem>

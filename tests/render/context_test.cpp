@@ -19,6 +19,7 @@ class OnBackend : public testing::TestWithParam<Backend> {
   void SetUp() override {
     std::string reason;
     context_ = open_context(GetParam(), reason);
+    if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
     if (!context_) GTEST_SKIP() << reason;
   }
   std::unique_ptr<gles::Context> context_;

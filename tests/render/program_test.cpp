@@ -84,6 +84,21 @@ TEST_P(Programs, SixteenBitFragmentsCompile) {
   EXPECT_GE(gles::Program(context->gl(), f.canonical(), false).location("u_clip_from_world"), 0);
 }
 
+// What does not show costs nothing: the driver finds no texture of single flakes where only their mean is drawn.
+TEST_P(Programs, MeanFlakesReadOnlyTheMean) {
+  std::string reason;
+  const auto context = open_context(GetParam(), reason);
+  if (!context) GTEST_SKIP() << reason;
+  const Features mean{packs::SurfaceKind::paint, 3, true, true, 1, true, true, 2, 0, false, true};
+  const gles::Program program(context->gl(), mean, true);
+  EXPECT_GE(program.location("u_mean"), 0);
+  for (const char* name : {"u_slice", "u_rank", "u_corner", "u_random", "u_lab_lo"})
+    EXPECT_EQ(program.location(name), -1) << name;
+  Features without = mean;
+  without.flakes = false;
+  EXPECT_EQ(gles::Program(context->gl(), without, true).location("u_mean"), -1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Backends, Programs, testing::Values(Backend::egl_surfaceless, Backend::osmesa),
                          [](const auto& info) { return std::string(gles::backend_name(info.param)); });
 

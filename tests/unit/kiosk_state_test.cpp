@@ -46,9 +46,10 @@ TEST(KioskState, GroupsMoveApart) {
 TEST(KioskState, NonsenseIsIgnored) {
   State state = make_state();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Control& event : {Control{ControlKind::weights, {1, 0}, {}}, Control{ControlKind::weights, {0.5, 0, 0}, {}},
-                               Control{ControlKind::weights, {nan, 0, 1}, {}}, Control{ControlKind::camera, {}, "none"},
-                               Control{ControlKind::zoom, {-1}, {}}, Control{ControlKind::orbit, {nan, 0}, {}}})
+  for (const Control& event :
+       {Control{ControlKind::weights, {1, 0}, {}}, Control{ControlKind::weights, {0.5, 0, 0}, {}},
+        Control{ControlKind::weights, {nan, 0, 1}, {}}, Control{ControlKind::camera, {}, "none"},
+        Control{ControlKind::zoom, {-1}, {}}, Control{ControlKind::orbit, {nan, 0}, {}}})
     EXPECT_FALSE(state.apply(event).any());
 }
 
@@ -59,11 +60,21 @@ TEST(KioskState, ARandomWalkKeepsItsPromises) {
   for (int k = 0; k < 100000; ++k) {
     const double a = unit(), b = unit() * (1 - a);
     switch (random() % 5) {
-      case 0: state.apply({ControlKind::weights, {a, b, 1 - a - b}, {}}); break;
-      case 1: state.apply({ControlKind::flake_lightness, {a, 1 - a, 0}, {}}); break;
-      case 2: state.apply({ControlKind::orbit, {720 * (a - 0.5), 90 * (b - 0.5)}, {}}); break;
-      case 3: state.apply({ControlKind::zoom, {0.2 + 3 * a}, {}}); break;
-      default: state.apply({ControlKind::camera, {}, a < 0.5 ? "hero" : "macro"}); break;
+      case 0:
+        state.apply({ControlKind::weights, {a, b, 1 - a - b}, {}});
+        break;
+      case 1:
+        state.apply({ControlKind::flake_lightness, {a, 1 - a, 0}, {}});
+        break;
+      case 2:
+        state.apply({ControlKind::orbit, {720 * (a - 0.5), 90 * (b - 0.5)}, {}});
+        break;
+      case 3:
+        state.apply({ControlKind::zoom, {0.2 + 3 * a}, {}});
+        break;
+      default:
+        state.apply({ControlKind::camera, {}, a < 0.5 ? "hero" : "macro"});
+        break;
     }
     const auto& w = state.weights().base;
     ASSERT_NEAR(std::accumulate(w.begin(), w.end(), 0.0), 1.0, 1e-6);

@@ -44,7 +44,8 @@ double albedo(Model& model, double m, const Vec& o) {
       const double c = std::cos(theta), t = std::tan(theta) / m;
       const double d = std::exp(-t * t) / (m * m * c * c * c * c);
       // rho/pi * i.z dw_i with dw_i = 4 ho dw_h and dw_h = pi / (D cos) dr dphi/(2 pi).
-      sum += model.paint_factor(up, i, o, {0, 0}, 0, 0).x / std::numbers::pi * i.z * 4.0 * ho * std::numbers::pi / (d * c);
+      sum +=
+          model.paint_factor(up, i, o, {0, 0}, 0, 0).x / std::numbers::pi * i.z * 4.0 * ho * std::numbers::pi / (d * c);
     }
   return sum / (n * n);
 }
@@ -134,7 +135,8 @@ TEST(PaintModel, DecodesLabAsColourDoes) {
 
 /// One paint, one slice in use at (0, 0): half black, and rare bright flakes.
 struct FlakePaint {
-  std::vector<QuantisedCuboid> clusters{{{0, 100, 32768, 32768, 32768, 32768}}, {{60000, 65535, 32000, 34000, 32000, 33000}}};
+  std::vector<QuantisedCuboid> clusters{{{0, 100, 32768, 32768, 32768, 32768}},
+                                        {{60000, 65535, 32000, 34000, 32000, 33000}}};
   std::vector<std::uint32_t> begin{0, 2, 4}, mass{990, 10, 990, 10};
   std::vector<std::uint8_t> index{0, 1, 0, 1};
   InterpolatablePaint paint;

@@ -16,8 +16,9 @@ std::vector<ScriptStep> parse(const char* text) {
 }
 
 TEST(Script, ReadsEveryCommand) {
-  const auto steps = parse("# a comment\n0 camera hero\n\n10 weights 0.25 0.75 over 500 # tail\n20 orbit 30 -5\n"
-                           "30 zoom 0.5\n40 lightness 0 1\n50 colour 1 0\n60 base 0 1\n");
+  const auto steps = parse(
+      "# a comment\n0 camera hero\n\n10 weights 0.25 0.75 over 500 # tail\n20 orbit 30 -5\n"
+      "30 zoom 0.5\n40 lightness 0 1\n50 colour 1 0\n60 base 0 1\n");
   ASSERT_EQ(steps.size(), 7u);
   EXPECT_EQ(steps[0].control.name, "hero");
   EXPECT_EQ(steps[1].control.values, (std::vector<double>{0.25, 0.75}));

@@ -11,9 +11,10 @@ double even_ramp(double y, double start, double rounding) {
   return soft_ramp(y - start, rounding) + soft_ramp(-y - start, rounding);
 }
 
-double blister(double distance_from_axle, double half_width, const LowerBodyShape& lower) {
+double blister(double distance_from_axle, double z, double half_width, const LowerBodyShape& lower) {
   const double beyond = soft_ramp(distance_from_axle - lower.blister_start_radius_mm, lower.blister_rounding_mm);
-  return half_width - lower.blister_slope * beyond;
+  const double below = soft_ramp(lower.blister_low_z_mm - z, lower.blister_rounding_mm);
+  return half_width - lower.blister_slope * beyond - lower.blister_low_slope * below;
 }
 
 }  // namespace
@@ -57,13 +58,14 @@ double BodyField::flank_half_width(double x, double z) const {
   const double upper = plan - lower.upper_lean * rise - lower.upper_crown_per_mm * above * above;
   const double under_flare = soft_ramp(sill_flare_z_(x) - z, lower.sill_flare_rounding_mm);
   const double under_roll = soft_ramp(lower.sill_roll_z_mm - z, lower.sill_roll_rounding_mm);
-  const double door = plan + undercut * rise + (lower.sill_flare + undercut) * under_flare -
-                      (lower.sill_flare + lower.sill_roll) * under_roll;
+  const double bow = z - lower.door_crown_z_mm;
+  const double door = plan + undercut * rise - lower.door_crown_per_mm * bow * bow +
+                      (lower.sill_flare + undercut) * under_flare - (lower.sill_flare + lower.sill_roll) * under_roll;
   const double dz = z - shape_.wheels.centre_z_mm;
   const double front =
-      blister(std::hypot(x - shape_.wheels.front_axle_x_mm, dz), lower.blister_half_width_front_mm, lower);
+      blister(std::hypot(x - shape_.wheels.front_axle_x_mm, dz), z, lower.blister_half_width_front_mm, lower);
   const double rear =
-      blister(std::hypot(x - shape_.wheels.rear_axle_x_mm, dz), lower.blister_half_width_rear_mm, lower);
+      blister(std::hypot(x - shape_.wheels.rear_axle_x_mm, dz), z, lower.blister_half_width_rear_mm, lower);
   const double side = soft_max(soft_max(door, front, lower.blister_blend_mm), rear, lower.blister_blend_mm);
   return soft_min(upper, side, shoulder_rounding_(x));
 }

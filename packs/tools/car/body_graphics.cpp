@@ -10,6 +10,12 @@ namespace lackwerk::packs::car {
 
 namespace {
 
+// Mesh edges along borders.
+constexpr double panel_mm = 36.0;     // shut lines
+constexpr double straight_mm = 30.0;  // gently curved ones
+constexpr double round_mm = 15.0;     // with small radii
+constexpr double small_mm = 7.0;      // as small as a door handle
+
 using View = std::function<Vec2(const Vec3&)>;
 
 Vec2 side_view(const Vec3& p) { return {p.x, p.z}; }
@@ -39,8 +45,8 @@ BodyGraphics::BodyGraphics(const BodyField& body, const WheelLayout& wheels, con
 }
 
 void BodyGraphics::draw_openings_and_lights() {
-  constexpr double nose_from_x_mm = 1800.0;
-  constexpr double tail_from_x_mm = -1850.0;
+  constexpr double nose_from_x_mm = 1650.0;
+  constexpr double tail_from_x_mm = -1650.0;
   const auto at_nose = [](const Vec3& p) { return p.x > nose_from_x_mm; };
   const auto at_tail = [](const Vec3& p) { return p.x < tail_from_x_mm; };
   const auto closed = [](const Corners& corners, const View& view) {
@@ -63,18 +69,21 @@ void BodyGraphics::draw_openings_and_lights() {
 }
 
 void BodyGraphics::draw_shut_lines() {
-  const auto closed = [this](const Corners& corners, const View& view, const std::function<bool(const Vec3&)>& where) {
+  const auto closed = [this](const Corners& corners, const View& view, const std::function<bool(const Vec3&)>& where,
+                             double edge_mm = panel_mm) {
     shut_lines_.push_back({[outline = Outline(corners), view](const Vec3& p) { return outline.distance(view(p)); },
-                           [this, where](const Vec3& p) { return where(p) && takes_shut_lines(p); }});
+                           [this, where](const Vec3& p) { return where(p) && takes_shut_lines(p); }, edge_mm});
   };
-  const auto open = [this](const Corners& corners, const View& view, const std::function<bool(const Vec3&)>& where) {
+  const auto open = [this](const Corners& corners, const View& view, const std::function<bool(const Vec3&)>& where,
+                           double edge_mm = panel_mm) {
     shut_lines_.push_back({[stroke = Stroke(corners), view](const Vec3& p) { return stroke.side(view(p)); },
-                           [this, where](const Vec3& p) { return where(p) && takes_shut_lines(p); }});
+                           [this, where](const Vec3& p) { return where(p) && takes_shut_lines(p); }, edge_mm});
   };
   const auto flank = [](const Vec3& p) { return p.y > 600.0 && std::abs(p.x) < 1900.0 && p.z < 1060.0; };
-  for (const Corners* corners : {&shape_.doors, &shape_.front_handle, &shape_.rear_handle, &shape_.charge_flap}) {
-    closed(*corners, side_view, flank);
-  }
+  closed(shape_.doors, side_view, flank);
+  closed(shape_.front_handle, side_view, flank, small_mm);
+  closed(shape_.rear_handle, side_view, flank, small_mm);
+  closed(shape_.charge_flap, side_view, flank, round_mm);
   const Outline doors(shape_.doors);
   open(shape_.door_split, side_view,
        [doors, flank](const Vec3& p) { return flank(p) && doors.distance(side_view(p)) < 0.0; });
@@ -83,7 +92,10 @@ void BodyGraphics::draw_shut_lines() {
   };
   shut_lines_.push_back(
       {bonnet, [this](const Vec3& p) { return p.x > 850.0 && p.z > 600.0 && !on_cabin(p) && takes_shut_lines(p); }});
-  closed(shape_.boot, end_view, [](const Vec3& p) { return p.x < -1880.0 && p.z > 600.0; });
+  closed(shape_.boot, end_view,
+         [this](const Vec3& p) { return p.x < -1880.0 && p.z > 600.0 && p.z < shape_.tail_frame[1].at.y; });
+  open(shape_.boot_side, top_view,
+       [this](const Vec3& p) { return p.x < shape_.boot_side.front().at.x && p.z > shape_.tail_frame[1].at.y - 20.0; });
   const double bumper_from_z = shape_.front_bumper.back().at.y - 200.0;
   open(shape_.front_bumper, corner_view(shape_.nose_u_origin_x_mm, shape_.nose_corner_deg, 1.0),
        [bumper_from_z, u = corner_view(shape_.nose_u_origin_x_mm, shape_.nose_corner_deg, 1.0),
@@ -171,8 +183,6 @@ std::vector<Cut> BodyGraphics::glass_cuts() const {
 }
 
 void BodyGraphics::collect_cuts() {
-  constexpr double straight_mm = 30.0;  // mesh edges along gently curved borders
-  constexpr double round_mm = 13.0;     // along small radii
   const auto low = [](const Vec3& p) { return p.z < 800.0; };
   add_cut([this](const Vec3& p) { return wheel_opening(p); }, low, 22.0);
   add_cut([this](const Vec3& p) { return lower_edge(p); }, low, straight_mm);
@@ -186,14 +196,15 @@ void BodyGraphics::collect_cuts() {
   for (const Drawn& drawn : openings_) add_cut(drawn.distance, drawn.active, 18.0);
   add_cut([this](const Vec3& p) { return openings_.front().distance(p) + shape_.grille_frame_mm; },
           openings_.front().active, straight_mm);
-  for (const std::vector<Drawn>* group : {&light_frames_, &clear_lights_, &red_lights_, &badges_}) {
+  for (const std::vector<Drawn>* group : {&light_frames_, &red_lights_, &badges_}) {
     for (const Drawn& drawn : *group) add_cut(drawn.distance, drawn.active, round_mm);
   }
+  for (const Drawn& drawn : clear_lights_) add_cut(drawn.distance, drawn.active, small_mm);
   for (const Drawn& drawn : recesses_) add_cut(drawn.distance, drawn.active, 18.0);
   for (const Drawn& drawn : shut_lines_) {
     for (const double offset : {-shape_.shut_line_half_mm, shape_.shut_line_half_mm}) {
       add_cut([distance = drawn.distance, offset](const Vec3& p) { return distance(p) + offset; }, drawn.active,
-              straight_mm);
+              drawn.edge_mm);
     }
   }
 }
@@ -208,12 +219,19 @@ bool BodyGraphics::is_dull(const Vec3& p) const {
                      [&p](const Drawn& d) { return d.active(p) && d.distance(p) < inside_mm; });
 }
 
+bool BodyGraphics::is_window(const Vec3& p) const {
+  const Region region = p.z > 850.0 ? window_region(p) : Region::paint;
+  return region != Region::paint;
+}
+
 double BodyGraphics::edge_limit(const Vec3& p) const {
   constexpr double zone_mm = 14.0;  // on either side of a border
-  constexpr double growth = 0.8;    // of the limit with distance, so that triangle sizes change gently
+  constexpr double gentle = 0.8;    // of the limit with distance, so that triangle sizes change gently
   constexpr double open_mm = 48.0;
   constexpr double dull_mm = 110.0;
-  double limit = is_dull(p) ? dull_mm : open_mm;
+  const bool dull = is_dull(p);
+  const double growth = dull ? 2.5 : gentle;
+  double limit = dull ? dull_mm : open_mm;
   for (std::size_t i = 0; i < cuts_.size(); ++i) {
     if (cut_edge_mm_[i] >= limit || !cuts_[i].active(p)) continue;
     const double beyond = std::fmax(0.0, std::abs(cuts_[i].distance(p)) - zone_mm);

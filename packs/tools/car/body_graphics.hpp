@@ -18,23 +18,23 @@ enum class Region {
   paint,
   opening,        ///< wheel openings: nothing there
   shut_line,      ///< gaps between panels
-  side_glass,     ///<
-  front_glass,    ///<
-  rear_glass,     ///<
+  side_glass,     ///< door and quarter windows
+  front_glass,    ///< windscreen
+  rear_glass,     ///< rear window
   window_frame,   ///< black pillars and borders of the glass
   window_bright,  ///< bright strip around the side windows
-  cowl,           ///< black gap between bonnet and windscreen
+  cowl,           ///< black border of the windscreen, widest at the bonnet
   head_lamp,      ///< glass of the head lamp
-  head_light,     ///< its light guide
-  tail_light,     ///< the light band
-  tail_frame,     ///< black around it
+  head_light,     ///< its light guide and modules
+  tail_light,     ///< the light band and the reflectors
+  tail_frame,     ///< black around the band
   grille_frame,   ///< bright
   badge,          ///< bright
   plate_recess,   ///< painted hollow for the rear plate
-  grille,         ///<
+  grille,         ///< the opening between the head lamps
   intake,         ///< lower openings in the bumper
   lower_trim,     ///< black sills and bumper undersides
-  underbody,      ///<
+  underbody,      ///< last: `build_body` counts on it
 };
 
 class BodyGraphics {
@@ -52,6 +52,10 @@ class BodyGraphics {
   [[nodiscard]] double edge_limit(const Vec3& p) const;
   /// Where nobody will see a reflection: underside, wheel openings, inside of intakes.
   [[nodiscard]] bool is_dull(const Vec3& p) const;
+  /// Height over the border of the black lower edge: negative on sills and diffuser.
+  [[nodiscard]] double lower_edge(const Vec3& p) const;
+  /// On or next to glass.
+  [[nodiscard]] bool is_window(const Vec3& p) const;
   /// Just the borders of the glass, for the lining behind it.
   [[nodiscard]] std::vector<Cut> glass_cuts() const;
 
@@ -60,6 +64,7 @@ class BodyGraphics {
   struct Drawn {
     std::function<double(const Vec3&)> distance;  ///< negative inside (closed) or on the right (open)
     std::function<bool(const Vec3&)> active;
+    double edge_mm = 0.0;  ///< for shut lines: how long mesh edges may be beside it
     [[nodiscard]] bool contains(const Vec3& p) const { return active(p) && distance(p) < 0.0; }
   };
 
@@ -70,7 +75,7 @@ class BodyGraphics {
   [[nodiscard]] double front_glass(const Vec3& p) const;
   [[nodiscard]] double front_black(const Vec3& p) const { return front_window(p, shape_.cowl_end_mm); }
   [[nodiscard]] double rear_window(const Vec3& p) const;
-  [[nodiscard]] double lower_edge(const Vec3& p) const;
+
   [[nodiscard]] double pillar(const Vec3& p) const;
   [[nodiscard]] bool takes_shut_lines(const Vec3& p) const;
   [[nodiscard]] Region window_region(const Vec3& p) const;

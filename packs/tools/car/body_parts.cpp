@@ -15,14 +15,15 @@ constexpr WrapBox body_box{{-2420, 0, 60}, {2420, 1050, 1560}, -1650, 1500, 620,
 SurfaceMesh mesh_body(const BodyField& body, const BodyGraphics& graphics) {
   SurfaceMesh mesh = wrap_field(body, body_box);
   MeshQuality quality;
-  quality.longest_edge_mm = [&graphics](const Vec3& p) { return graphics.edge_limit(p); };
-  quality.shortest_edge_mm = 7.0;
-  quality.bend_deg = 12.0;
-  quality.normal_error_deg = [&graphics](const Vec3& p) {
-    constexpr double glossy_deg = 0.40;
-    constexpr double dull_deg = 2.5;
-    return graphics.is_dull(p) ? dull_deg : glossy_deg;
+  quality.tolerance = [&graphics](const Vec3& p) {
+    constexpr double glossy_error_deg = 0.26;
+    constexpr double glass_error_deg = 0.9;
+    constexpr double dull_error_deg = 15.0;
+    const double limit = graphics.edge_limit(p);
+    if (graphics.is_dull(p)) return Tolerance{limit, 45.0, dull_error_deg};
+    return Tolerance{limit, 12.0, graphics.is_window(p) ? glass_error_deg : glossy_error_deg};
   };
+  quality.shortest_edge_mm = 8.0;
   refine(mesh, body, quality);
   MeshCutter cutter(mesh, body);
   for (const Cut& cut : graphics.cuts()) cutter.cut(cut);
@@ -40,7 +41,7 @@ Patch build_lining(const BodyField& body, const BodyGraphics& graphics) {
   constexpr double lining_from_z_mm = 900.0;
   constexpr double lining_edge_mm = 85.0;
   SurfaceMesh mesh = wrap_field(body, body_box);
-  refine(mesh, body, {[](const Vec3&) { return lining_edge_mm; }, 20.0, 12.0, {}});
+  refine(mesh, body, {[](const Vec3&) { return Tolerance{lining_edge_mm, 12.0}; }, 20.0});
   MeshCutter cutter(mesh, body);
   for (const Cut& cut : graphics.glass_cuts()) cutter.cut(cut);
   const Patch roof = extract(mesh, body, [&](const Triangle& t) {
@@ -53,7 +54,8 @@ Patch build_lining(const BodyField& body, const BodyGraphics& graphics) {
 }
 
 /// The returned edge of the wheel openings: a small painted radius, then a dark inner fender.
-void add_wheel_returns(BodyParts& parts, const Patch& opening, const WheelLayout& wheels) {
+void add_wheel_returns(BodyParts& parts, const Patch& opening, const BodyGraphics& graphics,
+                       const WheelLayout& wheels) {
   const auto outward_part = [&](double toward_axle_mm, double inward_mm) {
     return [=, &wheels](const Vec3& p) {
       const double axle_x = p.x > 0.0 ? wheels.front_axle_x_mm : wheels.rear_axle_x_mm;
@@ -62,13 +64,14 @@ void add_wheel_returns(BodyParts& parts, const Patch& opening, const WheelLayout
     };
   };
   // Only the arch itself, not the straight cut under the floor.
-  Patch rim;
+
   const std::vector<BorderEdge> edges = border(opening);
   struct Step {
     double toward_axle_mm, inward_mm;
   };
   const std::vector<Step> steps{{0.0, 0.0}, {1.2, 1.2}, {2.0, 4.0}, {2.0, 18.0}};
   Patch lip;
+  Patch black_lip;
   Patch well;
   for (const BorderEdge& e : edges) {
     const Vec3& a = opening.positions[e.from];
@@ -78,13 +81,15 @@ void add_wheel_returns(BodyParts& parts, const Patch& opening, const WheelLayout
       return std::abs(std::hypot(p.x - axle_x, p.z - wheels.centre_z_mm) - wheels.arch_radius_mm) < 1.0;
     };
     if (!on_arch(a) || !on_arch(b) || a.y < 700.0) continue;
+    const bool painted = graphics.lower_edge(0.5 * (a + b)) > 0.0;
+    Patch& edge = painted ? lip : black_lip;
     for (std::size_t s = 0; s + 1 < steps.size(); ++s) {
       const auto near = outward_part(steps[s].toward_axle_mm, steps[s].inward_mm);
       const auto far = outward_part(steps[s + 1].toward_axle_mm, steps[s + 1].inward_mm);
-      const auto base = static_cast<std::uint32_t>(lip.positions.size());
-      lip.positions.insert(lip.positions.end(), {a + near(a), b + near(b), b + far(b), a + far(a)});
-      lip.triangles.push_back({base, base + 1, base + 2});
-      lip.triangles.push_back({base, base + 2, base + 3});
+      const auto base = static_cast<std::uint32_t>(edge.positions.size());
+      edge.positions.insert(edge.positions.end(), {a + near(a), b + near(b), b + far(b), a + far(a)});
+      edge.triangles.push_back({base, base + 1, base + 2});
+      edge.triangles.push_back({base, base + 2, base + 3});
     }
     const auto last = outward_part(steps.back().toward_axle_mm, steps.back().inward_mm);
     const auto base = static_cast<std::uint32_t>(well.positions.size());
@@ -107,7 +112,19 @@ void add_wheel_returns(BodyParts& parts, const Patch& opening, const WheelLayout
   }
   constexpr double lip_crease_deg = 80.0;
   append(parts.lip, with_normals(lip, lip_crease_deg));
-  append(parts.trim, with_normals(well, lip_crease_deg));
+  append(parts.dark, with_normals(black_lip, lip_crease_deg));
+  append(parts.dark, with_normals(well, lip_crease_deg));
+  // The inner wall, so that nobody sees through the car between tyre and arch.
+  constexpr int wall_segments = 40;
+  const Patch wall =
+      with_normals(revolve({{0.0, 0.0}, {200.0, 0.0}, {wheels.arch_radius_mm, 0.0}}, wall_segments), 30.0);
+  for (const double x : {wheels.front_axle_x_mm, wheels.rear_axle_x_mm}) {
+    append(parts.dark, transformed(wall, [&wheels, x](const Vec3& p) {
+             constexpr double lowest_z_mm = 158.0;  // cut off flat at the car's floor
+             const double z = std::fmax(p.z + wheels.centre_z_mm, lowest_z_mm);
+             return Vec3{p.x + x, wheels.well_inner_y_mm, z};
+           }));
+  }
 }
 
 }  // namespace
@@ -129,16 +146,17 @@ BodyParts build_body(const BodyField& body, const BodyGraphics& graphics, const 
   }
   constexpr double grille_depth_mm = 45.0;
   constexpr double intake_depth_mm = 70.0;
-  constexpr double groove_depth_mm = 7.0;
+  constexpr double lamp_depth_mm = 42.0;
   const auto backward = [](double depth_mm) { return [depth_mm](const Vec3&) { return Vec3{-depth_mm, 0.0, 0.0}; }; };
   constexpr double plate_recess_mm = 12.0;
   const auto forward = [](const Vec3&) { return Vec3{plate_recess_mm, 0.0, 0.0}; };
   add_hole(parts.regions[Region::plate_recess], forward, parts.lip);
-  const auto inward = [&body](const Vec3& p) { return unit_normal(body, p) * -groove_depth_mm; };
-  add_hole(parts.regions[Region::grille], backward(grille_depth_mm), parts.trim);
-  add_hole(parts.regions[Region::intake], backward(intake_depth_mm), parts.trim);
-  add_hole(parts.regions[Region::shut_line], inward, parts.grooves);
-  add_wheel_returns(parts, parts.regions[Region::opening], shape.wheels);
+
+  add_hole(parts.regions[Region::grille], backward(grille_depth_mm), parts.dark);
+  add_hole(parts.regions[Region::intake], backward(intake_depth_mm), parts.dark);
+  add_hole(parts.regions[Region::head_lamp], backward(lamp_depth_mm), parts.dark);
+  append(parts.dark, parts.regions[Region::shut_line]);
+  add_wheel_returns(parts, parts.regions[Region::opening], graphics, shape.wheels);
   parts.lining = build_lining(body, graphics);
   return parts;
 }

@@ -12,13 +12,12 @@
 
 namespace lackwerk::packs::car {
 
-/// Everything of the left half, by region; regions with depth also fill `trim`, `lip` and `lining`.
+/// Everything of the left half, by region, and what gives the flat regions depth.
 struct BodyParts {
   std::map<Region, Patch> regions;
-  Patch lip;      ///< painted returns at the wheel openings
-  Patch trim;     ///< floors and walls of intakes, wheel wells
-  Patch grooves;  ///< walls and floors of the shut lines
-  Patch lining;   ///< inside of roof and pillars
+  Patch lip;     ///< painted returns at the wheel openings, hollow of the plate
+  Patch dark;    ///< shut lines, inside of intakes, wheel wells
+  Patch lining;  ///< inside of roof and pillars
 };
 
 [[nodiscard]] BodyParts build_body(const BodyField& body, const BodyGraphics& graphics, const BodyShape& shape);

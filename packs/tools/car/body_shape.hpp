@@ -26,8 +26,8 @@ struct WheelLayout {
 /// The lower body: flank, bonnet and decks, nose, tail, floor.
 struct LowerBodyShape {
   // Plan: half width at the shoulder line over x.
-  Knots plan_half_width{{-2330, 838, 0}, {-1900, 905, 300}, {-1430, 938, 350}, {-500, 926, 500},
-                        {500, 922, 500}, {1430, 934, 350},  {1900, 916, 250},  {2330, 850, 0}};
+  Knots plan_half_width{{-2330, 838, 0}, {-1900, 906, 300}, {-1430, 936, 400}, {-500, 939, 600},
+                        {500, 936, 600}, {1430, 928, 400},  {1900, 914, 250},  {2330, 850, 0}};
   // Height of the shoulder line over x: the wedge.
   Knots shoulder_z{{-2300, 884, 0}, {-1430, 858, 500}, {1400, 770, 500}, {2300, 716, 0}};
   // Rounding of the shoulder line: crisp on the doors, melting into lamps at both ends.
@@ -36,7 +36,9 @@ struct LowerBodyShape {
   double upper_crown_per_mm = 0.0006;  ///< and more so further up
   /// Flank below the shoulder line falls in on its way down, on the doors more than on the bumpers.
   Knots lower_undercut{{-2000, 0.02, 0}, {-1300, 0.08, 300}, {1300, 0.10, 300}, {1900, 0.02, 0}};
-  double sill_flare = 0.26;  ///< then turns out again: the light catcher
+  double door_crown_per_mm = 0.00009;  ///< the door's section is bowed about this height
+  double door_crown_z_mm = 640.0;
+  double sill_flare = 0.29;  ///< then turns out again: the light catcher
   double sill_flare_rounding_mm = 75.0;
   Knots sill_flare_z{{-1400, 512, 0}, {0, 430, 400}, {1400, 380, 0}};
   double sill_roll_z_mm = 225.0;  ///< under this the sill turns under the car
@@ -50,15 +52,17 @@ struct LowerBodyShape {
   double blister_slope = 0.24;
   double blister_rounding_mm = 75.0;
   double blister_blend_mm = 46.0;
+  double blister_low_z_mm = 330.0;  ///< under this the blister falls in towards the sill
+  double blister_low_slope = 0.17;
 
   // Bonnet, shelf beside the cabin, boot lid: height at the centre line over x.
   Knots deck_z{{-2330, 1004, 0}, {-2000, 1000, 120}, {-1400, 992, 300}, {-600, 974, 400}, {400, 962, 300},
-               {1000, 962, 200}, {1450, 918, 300},   {1900, 842, 250},  {2180, 758, 90},  {2330, 660, 0}};
-  double deck_crown_per_mm = 0.00006;  ///< z falls with y squared
+               {1000, 962, 200}, {1450, 918, 300},   {1900, 842, 250},  {2190, 758, 130}, {2330, 655, 0}};
+  double deck_crown_per_mm = 0.00009;  ///< z falls with y squared
   // Bonnet crease (half distance from centre) and how much the surface kicks up there.
   Knots bonnet_crease_y{{-400, 700, 0}, {800, 640, 300}, {2300, 430, 0}};
-  Knots bonnet_crease_kick{{-600, 0.0, 0}, {600, 0.02, 300}, {1200, 0.12, 300}, {2000, 0.11, 200}, {2400, 0.03, 0}};
-  double bonnet_crease_rounding_mm = 40.0;
+  Knots bonnet_crease_kick{{-600, 0.0, 0}, {600, 0.02, 300}, {1300, 0.12, 400}, {2400, 0.11, 0}};
+  double bonnet_crease_rounding_mm = 60.0;
   // Fender crest: from here outward the top falls towards the flank.
   Knots fender_crest_y{{-2300, 690, 0}, {-1400, 770, 400}, {0, 800, 500}, {1400, 760, 400}, {2300, 650, 0}};
   double fender_fall = 0.42;
@@ -97,7 +101,7 @@ struct CabinShape {
   double tumblehome = 0.30;
   double tumblehome_gain_per_mm = 0.00040;
   // Windscreen, roof, rear window in one sweep: z over x at the centre line.
-  Knots roof_z{{-2330, 820, 0},   {-2080, 1020, 90}, {-1800, 1128, 300}, {-1350, 1282, 350},
+  Knots roof_z{{-2330, 560, 0},   {-2085, 1016, 60}, {-1800, 1128, 300}, {-1350, 1282, 350},
                {-820, 1428, 350}, {-260, 1466, 300}, {270, 1388, 150},   {1300, 802, 0}};
   Knots plan_sweep_per_mm{{-1500, -0.00018, 0}, {-700, -0.00008, 300}, {0, 0.00004, 300}, {700, 0.00022, 0}};
   double roof_crown_per_mm = 0.00009;

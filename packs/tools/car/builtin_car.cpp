@@ -34,7 +34,7 @@ void add_body(Scene& scene, BodyParts parts, const FacePatches& face) {
   append(paint, parts.lip);
   append(paint, mirror.cap);
   add_both_sides(scene, paint, "body", SurfaceKind::paint, face.paint);
-  add_both_sides(scene, parts.grooves, "shut_lines", SurfaceKind::rubber);
+  add_both_sides(scene, parts.dark, "gaps", SurfaceKind::rubber);
   Patch bright = regions[Region::window_bright];
   append(bright, mirror.glass);
   append(bright, regions[Region::grille_frame]);
@@ -42,13 +42,15 @@ void add_body(Scene& scene, BodyParts parts, const FacePatches& face) {
   add_both_sides(scene, bright, "bright_trim", SurfaceKind::chrome, face.bright);
   add_both_sides(scene, regions[Region::head_light], "head_lights", SurfaceKind::lamp_clear);
   add_both_sides(scene, regions[Region::tail_light], "tail_light", SurfaceKind::lamp_red);
-  Patch trim = parts.trim;
-  for (const Region region : {Region::window_frame, Region::cowl, Region::tail_frame, Region::lower_trim}) {
+  Patch trim = mirror.base;
+
+  for (const Region region :
+       {Region::window_frame, Region::cowl, Region::tail_frame, Region::lower_trim, Region::underbody}) {
     append(trim, regions[region]);
   }
-  append(trim, mirror.base);
+
   add_both_sides(scene, trim, "trim", SurfaceKind::trim, face.trim);
-  add_both_sides(scene, regions[Region::underbody], "underbody", SurfaceKind::rubber);
+
   add_both_sides(scene, parts.lining, "lining", SurfaceKind::interior);
   add_both_sides(scene, regions[Region::side_glass], "side_windows", SurfaceKind::glass);
   add_both_sides(scene, regions[Region::front_glass], "windscreen", SurfaceKind::glass);
@@ -86,7 +88,7 @@ Scene build_builtin_car() {
   add_wheels(scene, shape.wheels);
   add_parts(scene.parts, build_interior(), "interior", SurfaceKind::interior);
   add_parts(scene.parts, build_floor({}), "floor", SurfaceKind::floor);
-  scene.cameras = car_cameras();
+  scene.cameras = car_cameras(body);
   constexpr int rays_per_vertex = 128;
   bake_ambient_occlusion(scene, rays_per_vertex);
   return scene;

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "packs/scene.hpp"
+#include "packs/tools/car/field.hpp"
 
 namespace lackwerk::packs::car {
 
-[[nodiscard]] std::vector<Camera> car_cameras();
+/// `body` places the close view exactly on the bonnet.
+[[nodiscard]] std::vector<Camera> car_cameras(const Field& body);
 
 }  // namespace lackwerk::packs::car

@@ -78,7 +78,7 @@ MirrorPatches build_mirror() {
   const Vec3 reach{170.0, 160.0, 120.0};
   SurfaceMesh mesh = wrap_field(field, {shape.centre_mm - reach, shape.centre_mm + reach, shape.centre_mm.x + 5.0,
                                         shape.centre_mm.x + 15.0, shape.centre_mm.z, shape.centre_mm.y, 48.0});
-  refine(mesh, field, {[](const Vec3&) { return 26.0; }, 4.0, 14.0, [](const Vec3&) { return 0.9; }});
+  refine(mesh, field, {[](const Vec3&) { return Tolerance{26.0, 14.0, 0.8}; }, 4.0});
   const auto glass = [&](const Vec3& p) { return (field.norm(p, true) - shape.glass_scale) * shape.half_size_mm.z; };
   const auto behind = [&](const Vec3& p) { return field.local(p).x < shape.rear_face_x_mm + 14.0; };
   const auto base = [&](const Vec3& p) { return p.z - shape.centre_mm.z - shape.base_z_mm; };

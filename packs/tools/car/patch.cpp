@@ -184,9 +184,9 @@ Patch revolve(const std::vector<Vec2>& profile, int segments) {
 }
 
 Patch rounded_box(const Vec3& centre, const Vec3& half_size, double radius_mm) {
-  // A cube grid with three extra lines near each edge, pushed onto the rounded shape.
-  const std::array<double, 8> line{-1.0, -0.8, -0.45, 0.0, 0.0, 0.45, 0.8, 1.0};
-  constexpr int count = 8;
+  // A cube grid with extra lines near each edge, pushed onto the rounded shape.
+  const std::array<double, 6> line{-1.0, -0.55, 0.0, 0.0, 0.55, 1.0};
+  constexpr int count = 6;
   Patch patch;
   for (int axis = 0; axis < 3; ++axis) {
     for (int side = -1; side <= 1; side += 2) {
@@ -220,6 +220,8 @@ void add_parts(std::vector<MeshPart>& parts, const Patch& patch, const std::stri
     part.kind = kind;
     std::vector<std::uint32_t> index(patch.positions.size(), no_vertex);
     for (; next < patch.triangles.size() && part.positions_mm.size() + 3 <= most_vertices; ++next) {
+      constexpr double least_area_mm2 = 1e-5;
+      if (glm::length(area_normal(patch, patch.triangles[next])) < least_area_mm2) continue;
       for (const std::uint32_t v : patch.triangles[next]) {
         if (index[v] == no_vertex) {
           index[v] = static_cast<std::uint32_t>(part.positions_mm.size());

@@ -57,7 +57,7 @@ struct BorderEdge {
 /// A box with all edges rounded, centred at `centre`.
 [[nodiscard]] Patch rounded_box(const Vec3& centre, const Vec3& half_size, double radius_mm);
 
-/// Cuts a patch into parts that 16-bit indices can address and appends them.
+/// Cuts a patch into parts that 16-bit indices can address and appends them. Triangles without area are dropped.
 void add_parts(std::vector<MeshPart>& parts, const Patch& patch, const std::string& name, SurfaceKind kind);
 
 }  // namespace lackwerk::packs::car

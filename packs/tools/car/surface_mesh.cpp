@@ -126,10 +126,10 @@ class Refinement {
     std::uint32_t vertex = no_vertex;
   };
 
-  void know(const Vec3& p) { know(unit_normal(field_, p), quality_.longest_edge_mm(p)); }
-  void know(const Vec3& normal, double limit) {
+  void know(const Vec3& p) { know(unit_normal(field_, p), quality_.tolerance(p)); }
+  void know(const Vec3& normal, const Tolerance& tolerance) {
     normals_.push_back(normal);
-    limits_.push_back(limit);
+    tolerances_.push_back(tolerance);
   }
 
   [[nodiscard]] double length(std::uint32_t a, std::uint32_t b) const {
@@ -147,13 +147,17 @@ class Refinement {
 
   [[nodiscard]] bool wants_split(std::uint32_t a, std::uint32_t b) {
     const double l = length(a, b);
+
+    const Tolerance& at_a = tolerances_[a];
+    const Tolerance& at_b = tolerances_[b];
+    if (l > 0.5 * (at_a.longest_edge_mm + at_b.longest_edge_mm)) return true;
     if (l < 2.0 * quality_.shortest_edge_mm) return false;
-    if (l > 0.5 * (limits_[a] + limits_[b])) return true;
-    if (glm::dot(normals_[a], normals_[b]) < std::cos(glm::radians(quality_.bend_deg))) return true;
-    if (!quality_.normal_error_deg) return false;
+    const double bend_deg = std::fmin(at_a.bend_deg, at_b.bend_deg);
+    if (glm::dot(normals_[a], normals_[b]) < std::cos(glm::radians(bend_deg))) return true;
+    const double error_deg = std::fmin(at_a.normal_error_deg, at_b.normal_error_deg);
+    if (error_deg >= 180.0) return false;
     const Vec3 interpolated = glm::normalize(normals_[a] + normals_[b]);
-    const Middle& m = middle(a, b);
-    return glm::distance(interpolated, m.normal) > glm::radians(quality_.normal_error_deg(m.at));
+    return glm::distance(interpolated, middle(a, b).normal) > glm::radians(error_deg);
   }
 
   bool close(const Triangle& t) {
@@ -172,7 +176,7 @@ class Refinement {
     if (m.vertex == no_vertex) {
       m.vertex = static_cast<std::uint32_t>(mesh_.positions.size());
       mesh_.positions.push_back(m.at);
-      know(m.normal, quality_.longest_edge_mm(m.at));
+      know(m.normal, quality_.tolerance(m.at));
     }
     return m.vertex;
   }
@@ -181,7 +185,7 @@ class Refinement {
   const Field& field_;
   const MeshQuality& quality_;
   std::vector<Vec3> normals_;
-  std::vector<double> limits_;
+  std::vector<Tolerance> tolerances_;
   std::unordered_set<std::uint64_t> marked_;
   std::unordered_map<std::uint64_t, Middle> middle_;
 };

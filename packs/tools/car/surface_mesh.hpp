@@ -30,14 +30,17 @@ struct WrapBox {
   double cell_mm;
 };
 
+/// How coarse the mesh may be at a place.
+struct Tolerance {
+  double longest_edge_mm;
+  double bend_deg;                  ///< between the normals at both ends of an edge
+  double normal_error_deg = 180.0;  ///< of the interpolated normal in the middle: what one sees as ragged reflections
+};
+
 /// Where to spend triangles.
 struct MeshQuality {
-  std::function<double(const Vec3&)> longest_edge_mm;  ///< upper limit at a place
-  double shortest_edge_mm;                             ///< never split below twice this
-  double bend_deg;                                     ///< split an edge whose end normals differ by more
-  /// Split also where the interpolated normal is wrong by more in the middle of an edge: that is what one sees as
-  /// ragged reflections. Left empty: do not look.
-  std::function<double(const Vec3&)> normal_error_deg{};
+  std::function<Tolerance(const Vec3&)> tolerance;
+  double shortest_edge_mm;  ///< bends are not followed below twice this
 };
 
 [[nodiscard]] SurfaceMesh wrap_field(const Field& field, const WrapBox& box);

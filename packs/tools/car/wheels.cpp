@@ -8,7 +8,7 @@ namespace lackwerk::packs::car {
 
 namespace {
 
-constexpr int tyre_segments = 64;
+constexpr int tyre_segments = 60;
 constexpr int rim_segments = 72;
 
 /// Points of a circle arc, angles in degrees, 0 along +radius, 90 along +y.
@@ -37,7 +37,7 @@ Patch build_tyre(const WheelLayout& layout, const WheelShape& shape) {
   profile.push_back({shape.rim_radius_mm + 57.0, -5.5});
   add_arc(profile, {tread - shoulder_mm, -shoulder_mm - 8.0}, shoulder_mm, 68.0, 8.0, 5);
   // Tread with circumferential grooves, slightly crowned.
-  for (const double at : {0.30, 0.50, 0.70}) {
+  for (const double at : {0.34, 0.66}) {
     const double y = -width * at;
     profile.push_back({tread, y + groove_half_mm});
     profile.push_back({tread - groove_depth_mm, y + groove_half_mm * 0.8});
@@ -112,7 +112,7 @@ Patch build_hub(const WheelShape& s) {
                                   {s.hub_radius_mm, y - 14.0},
                                   {s.hub_radius_mm + 2.0, y - 60.0}};
   constexpr double crease_deg = 40.0;
-  return with_normals(revolve(profile, 48), crease_deg);
+  return with_normals(revolve(profile, 36), crease_deg);
 }
 
 Patch build_disc(const WheelShape& s) {
@@ -126,7 +126,7 @@ Patch build_disc(const WheelShape& s) {
                                   {s.disc_radius_mm, y - 2.0},
                                   {s.disc_radius_mm, y - 30.0}};
   constexpr double crease_deg = 30.0;
-  return with_normals(revolve(profile, 64), crease_deg);
+  return with_normals(revolve(profile, 48), crease_deg);
 }
 
 Patch build_caliper(const WheelShape& s) {
@@ -162,7 +162,7 @@ WheelPatches build_wheel(const WheelLayout& layout, const WheelShape& shape) {
   const double y = shape.spoke_hub_y_mm;
   const std::vector<Vec2> cap{{0.0, y + 3.0}, {20.0, y + 2.4}, {30.0, y + 1.0}, {35.0, y - 3.0}};
   constexpr double smooth_deg = 60.0;
-  wheel.cap = with_normals(revolve(cap, 32), smooth_deg);
+  wheel.cap = with_normals(revolve(cap, 28), smooth_deg);
   return wheel;
 }
 

@@ -1,0 +1,86 @@
+// Medians of the kernels that the figures in the documents speak of. Run by scripts/bench; asserts nothing.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/analysis/flake_clusters.hpp"
+#include "core/analysis/interpolation.hpp"
+#include "core/analysis/transport.hpp"
+#include "core/paint_model.hpp"
+#include "core/rank_table.hpp"
+#include "core/realise.hpp"
+#include "tests/unit/random_flakes.hpp"
+
+namespace lackwerk::core {
+namespace {
+
+/// The real layout: 67 slices, 9 levels, 50 clusters a row.
+const FlakeFrame& real_frame() {
+  static const FlakeFrame frame{axf_layout(), 9, 0.05f, 480, 1};
+  return frame;
+}
+
+InterpolatableData real_data(std::size_t paints) {
+  std::mt19937 random(1);
+  return testing::build_or_fail(testing::random_paints(random, paints, real_frame(), 50, 230400), real_frame(), 2);
+}
+
+void transport_50_by_50(benchmark::State& state) {
+  std::mt19937 random(2);
+  std::vector<glm::dvec3> a(50), b(50);
+  std::vector<std::int64_t> mass(50, 4608);
+  for (auto* side : {&a, &b})
+    for (auto& centre : *side)
+      centre = {testing::uniform(random, 0, 250), testing::uniform(random, -40, 40), testing::uniform(random, -40, 40)};
+  for (auto _ : state) benchmark::DoNotOptimize(solve_transport(a, mass, b, mass));
+}
+BENCHMARK(transport_50_by_50)->Unit(benchmark::kMicrosecond);
+
+void clusters_of_a_slice(benchmark::State& state) {
+  std::mt19937 random(3);
+  std::vector<glm::vec3> lab(480 * 480, glm::vec3(0.0f));
+  for (auto& texel : lab)
+    if (random() % 5 == 0) {
+      const auto l = static_cast<float>(std::pow(testing::uniform(random, 0, 1), 3) * 480);
+      texel = {l, -0.05f * l, 0.02f * l};
+    }
+  for (auto _ : state) benchmark::DoNotOptimize(cluster_texels(lab, {}));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(lab.size()));
+}
+BENCHMARK(clusters_of_a_slice)->Unit(benchmark::kMillisecond);
+
+void realise_all_rows(benchmark::State& state) {
+  const auto data = real_data(static_cast<std::size_t>(state.range(0)));
+  const auto paint = data.view();
+  RealisedPaint out;
+  const std::vector<double> w(paint.paints.size(), 1.0 / static_cast<double>(paint.paints.size()));
+  for (auto _ : state) {
+    realise(paint, Weights::uniform(w), out);
+    benchmark::DoNotOptimize(out.corners.data());
+  }
+}
+BENCHMARK(realise_all_rows)->Arg(2)->Arg(3)->Arg(5)->Unit(benchmark::kMillisecond);
+
+void rank_table(benchmark::State& state) {
+  const auto data = real_data(3);
+  const auto paint = data.view();
+  for (auto _ : state) benchmark::DoNotOptimize(build_rank_table(paint));
+}
+BENCHMARK(rank_table)->Unit(benchmark::kMillisecond);
+
+void model_on_the_cpu(benchmark::State& state) {
+  PaintModel<float> model;
+  model.u_lobe[0] = {0.065f, 0.08f, 0.09f, 1.0f};
+  model.u_inv_m = {1.0f / 0.38f, 1.0f / 0.17f, 1.0f / 0.013f};
+  model.u_coat_ior = 1.5f;
+  glm::vec3 i(0.6f, 0.0f, 0.8f);
+  const glm::vec3 o(-0.28f, 0.0f, 0.96f);
+  for (auto _ : state) benchmark::DoNotOptimize(model.paint_factor({0, 0, 1}, i, o, {0, 0}, 0, 0));
+}
+BENCHMARK(model_on_the_cpu)->Unit(benchmark::kNanosecond);
+
+}  // namespace
+}  // namespace lackwerk::core
+
+BENCHMARK_MAIN();

@@ -1,0 +1,163 @@
+#!/bin/sh
+# Bad input to the `lackwerk` program: the right exit code, one line on stderr that names the place, nothing else.
+# Usage: cli_errors.sh PATH_TO_LACKWERK
+set -eu
+lackwerk=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+failures=0
+checks=0
+
+# expect CODE PATTERN ARGUMENTS...: runs the program; PATTERN is a basic regular expression for the line on stderr.
+expect() {
+  code=$1 pattern=$2
+  shift 2
+  checks=$((checks + 1))
+  status=0
+  "$lackwerk" "$@" >out.txt 2>err.txt || status=$?
+  lines=$(wc -l <err.txt)
+  if [ "$status" -ne "$code" ]; then
+    echo "FAILED: lackwerk $*: exit code $status, expected $code"
+  elif [ "$lines" -ne 1 ]; then
+    echo "FAILED: lackwerk $*: $lines lines on stderr, expected 1"
+  elif ! grep -q "^lackwerk: .*$pattern" err.txt; then
+    echo "FAILED: lackwerk $*: no '$pattern' in the error"
+  else
+    return 0
+  fi
+  cat err.txt
+  failures=$((failures + 1))
+}
+
+# succeed ARGUMENTS...: exit code 0 and a silent stderr.
+succeed() {
+  checks=$((checks + 1))
+  if ! "$lackwerk" "$@" >out.txt 2>err.txt || [ -s err.txt ]; then
+    echo "FAILED: lackwerk $*"
+    cat err.txt
+    failures=$((failures + 1))
+  fi
+}
+
+cat >small.toml <<'TOML'
+name = "Small"
+source = "made up for a test"
+provenance = "published-fit"
+diffuse = [0.1, 0.1, 0.1]
+coat_ior = 1.5
+coat_provenance = "simulated"
+refraction_ior = 1.5
+[[lobe]]
+s = [0.3, 0.3, 0.3]
+m = 0.4
+f0 = 0.5
+[flakes]
+provenance = "simulated"
+share = 0.5
+coverage = 0.9
+diameter_um = 20
+diameter_spread = 0.3
+diameter_max_um = 60
+TOML
+
+# Usage.
+expect 2 'subcommand'
+expect 2 'help' frobnicate
+expect 2 'help' pack build
+expect 2 'help' pack info
+expect 2 'help' capture small.toml --no-such-option -o d
+expect 2 'edge' capture small.toml -o d --edge 100000
+expect 2 'MODEL' scene build tank -o s.lws
+expect 2 'help' compare only-one.png
+for command in '' capture pack 'pack build' 'pack info' 'pack verify' scene 'scene build' compare; do
+  # shellcheck disable=SC2086
+  succeed $command --help
+done
+
+# Recipes.
+expect 1 'missing.toml' capture missing.toml -o d
+echo 'name = "x' >broken.toml
+expect 1 'broken.toml: line 1' capture broken.toml -o d
+sed 's/diffuse/difuse/' small.toml >typo.toml
+expect 1 'typo.toml: .*difuse' capture typo.toml -o d
+expect 1 'broken.toml' capture small.toml -o broken.toml --edge 16
+
+# Captures.
+succeed capture small.toml -o good --edge 16 --texel-mm 0.05
+succeed capture small.toml -o other --edge 32 --texel-mm 0.05 --json
+slice=$(ls good/flakes/* | head -n 1)
+cp -r good cut
+truncate -s 100 "cut/${slice#good/}"
+cp -r good lost
+rm "lost/${slice#good/}"
+cp -r good scribble
+echo 'nonsense = 1' >>scribble/paint.toml
+expect 1 'nowhere' pack build nowhere -o p.lwp
+expect 1 'cut/flakes' pack build cut -o p.lwp
+expect 1 'lost/flakes' pack build lost -o p.lwp
+expect 1 'scribble/paint.toml' pack build scribble -o p.lwp
+expect 1 'other: edge_texels: .*good' pack build good other -o p.lwp
+expect 2 'captures' pack build good good good good good good -o p.lwp
+expect 1 'id' pack build good -o p.lwp --id 'two words'
+expect 1 'no/such' pack build good -o no/such/p.lwp
+expect 2 'threads' pack build good -o p.lwp --threads -3
+test ! -e p.lwp
+
+# Packs.
+succeed pack build good good -o p.lwp --serial 7
+succeed pack verify p.lwp
+succeed pack info p.lwp
+succeed pack info p.lwp --json
+grep -q '"serial": 7' out.txt && grep -q '"paints"' out.txt || { echo 'FAILED: pack info --json'; failures=$((failures + 1)); }
+expect 1 'missing.lwp' pack info missing.lwp
+expect 1 'regular file' pack info good
+# flip FILE OFFSET: another byte there.
+flip() {
+  byte=$(od -An -tu1 -j "$2" -N 1 "$1" | tr -d ' ')
+  # shellcheck disable=SC2059
+  printf "\\$(printf %o $((byte ^ 4)))" | dd of="$1" bs=1 seek="$2" conv=notrunc 2>/dev/null
+}
+for place in 3:magic 9:format_version 13:kind 17:payload_bytes 25:reserved 40:digest 100:digest 5000:digest; do
+  cp p.lwp flipped.lwp
+  flip flipped.lwp "${place%%:*}"
+  expect 1 "flipped.lwp: ${place##*:}" pack verify flipped.lwp
+  expect 1 "flipped.lwp: ${place##*:}" pack info flipped.lwp
+done
+for size in 0 10 64 65 1000; do
+  head -c "$size" p.lwp >cut.lwp
+  expect 1 'cut.lwp: ' pack verify cut.lwp
+done
+
+# Pictures.
+printf 'P6 2 2 255\n012345678901' >a.ppm
+printf 'P6 2 1 255\n012345' >b.ppm
+head -c 15 a.ppm >c.ppm
+expect 1 'b.ppm: size' compare a.ppm b.ppm
+expect 1 'missing.png' compare a.ppm missing.png
+expect 1 'small.toml' compare a.ppm small.toml
+succeed compare a.ppm a.ppm --json --map map.png
+head -c 50 map.png >half.png
+expect 1 'half.png' compare map.png half.png
+expect 1 'map.xyz' compare a.ppm a.ppm --map map.xyz
+
+# Weights are refused before anything is drawn.
+if "$lackwerk" render --help 2>/dev/null | grep -q -e --weights; then
+  for weights in 0.5 0.5,0.6 0.2,0.3,0.5 0.5,nan a,b 0.5,; do
+    expect 2 'weights' render --pack p.lwp --scene sphere --weights "$weights" -o w.png
+  done
+  expect 1 'missing.lwp' render --pack missing.lwp --scene sphere -o w.png
+  expect 1 'flipped.lwp' render --pack flipped.lwp --scene sphere -o w.png
+fi
+
+# Scenes.
+succeed scene build sphere -o s.lws --occlusion-rays 4
+succeed pack verify s.lws
+expect 1 's.lws: kind' pack info s.lws
+cp s.lws t.lws
+flip t.lws 200
+expect 1 't.lws: digest' pack verify t.lws
+expect 1 'no/such' scene build sphere -o no/such/s.lws --occlusion-rays 0
+
+echo "$checks runs, $failures failures"
+test "$failures" -eq 0
