@@ -116,6 +116,21 @@ vec3 chi_factor(real theta_h, real theta_i) {
 #endif
 
 #if HAS_FLAKES
+// Place on the paint in texels, without the mesh's own uvs: p (mm) projected along the normal's largest axis. The
+// pattern is random, so where the axis changes nothing shows; stretch is at most sqrt(3).
+vec2 surface_texel(vec3 p, vec3 n, real texels_per_mm) {
+  real ax = abs(n.x);
+  real ay = abs(n.y);
+  real az = abs(n.z);
+  vec2 q = az >= max(ax, ay) ? vec2(p.x, p.y) : (ay >= ax ? vec2(p.x, p.z) : vec2(p.y, p.z));
+  return q * texels_per_mm;
+}
+// log2 of a pixel's footprint in texels (geometric mean of its axes), plus log2(1.5): a glint narrower than about
+// 1.5 pixels would alias when the car turns. pixel_texels: texels per pixel and mm of distance.
+real surface_lod(real distance_mm, real co, real pixel_texels) {
+  return log2(max(distance_mm * pixel_texels, R(1e-4))) - R(0.5) * log2(max(co, R(0.05))) + R(0.585);
+}
+
 // Lab of a radiance factor to linear sRGB, >= 0 (CIE 15:2004; the toe is linear).
 real lab_component(real f) {
   return f > LAB_DELTA ? f * f * f : R(3.0) * LAB_DELTA * LAB_DELTA * (f - R(4.0) / R(29.0));

@@ -114,11 +114,11 @@ double RowFit::step_cost(int step, int first, int advance, Cuts& cuts) const {
   double right = 0.0;
   int from = 0;
   for (int n = 0; n <= advance; ++n) {
-    const auto tuple = static_cast<std::size_t>(first + n);
+    const auto tuple = static_cast<std::size_t>(first) + static_cast<std::size_t>(n);
     int to = cells_per_step;
     if (n < advance) {
       const double ideal = std::clamp(edge_[tuple + 1] - origin, 0.0, double{cells_per_step});
-      to = std::clamp(static_cast<int>(ideal + 0.5), from + 1, cells_per_step - (advance - n));
+      to = std::clamp(static_cast<int>(std::lround(ideal)), from + 1, cells_per_step - (advance - n));
       cuts[static_cast<std::size_t>(n)] = to;
     }
     const double overlap_from = std::max(origin + from, edge_[tuple]);

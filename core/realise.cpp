@@ -191,13 +191,14 @@ struct RowCorners {
 void round_row(const RowCorners& corners, std::size_t tuples, QuantisedCuboid* out) {
   static_assert(std::endian::native == std::endian::little, "min and max are stored as one 32-bit word");
   std::array<std::uint32_t, max_tuples_per_row * 3> words;
+  constexpr float to_nearest = 0.5f;  // what follows is never negative
   const std::size_t count = tuples * 3;
   for (std::size_t i = 0; i < count; ++i) {
     const float middle = 0.5f * (corners.lo[i] + corners.hi[i]);
     const float lo = std::min(corners.lo[i], middle);
     const float hi = std::max(corners.hi[i], middle);
-    const int lo_q = static_cast<int>(std::min(std::max(lo, 0.0f), 65535.0f) + 0.5f);
-    const int hi_q = static_cast<int>(std::min(std::max(hi, 0.0f), 65535.0f) + 0.5f);
+    const int lo_q = static_cast<int>(std::min(std::max(lo, 0.0f), 65535.0f) + to_nearest);
+    const int hi_q = static_cast<int>(std::min(std::max(hi, 0.0f), 65535.0f) + to_nearest);
     words[i] = static_cast<std::uint32_t>(lo_q) | static_cast<std::uint32_t>(hi_q) << 16;
   }
   for (std::size_t t = 0; t < tuples; ++t)

@@ -22,19 +22,6 @@ uniform vec3 u_light[NUM_LIGHTS];
 #if SURFACE == 0 && HAS_FLAKES
 uniform float u_texels_per_mm;
 uniform float u_pixel_texels;
-
-// Place on the paint in texels, without the mesh's own uvs: projected along the normal's largest axis. The pattern is
-// random, so where the axis changes nothing shows; stretch is at most sqrt(3).
-vec2 surface_texel(vec3 p, vec3 n) {
-  vec3 a = abs(n);
-  vec2 q = a.z >= max(a.x, a.y) ? p.xy : (a.y >= a.x ? p.xz : p.yz);
-  return q * u_texels_per_mm;
-}
-// log2 of the pixel's footprint in texels (geometric mean of its axes), plus log2(1.5): a glint narrower than about
-// 1.5 pixels would alias when the car turns.
-float surface_lod(float distance_mm, float co) {
-  return log2(max(distance_mm * u_pixel_texels, 1e-4)) - 0.5 * log2(max(co, 0.05)) + 0.585;
-}
 #endif
 
 // Light that falls on a matt surface: the lamps, as E/pi.
@@ -59,6 +46,12 @@ vec3 lamps_gloss(vec3 n, vec3 o, float inv_m) {
 }
 float gloss_fresnel(vec3 n, vec3 o, float f0) { return fresnel_schlick(max(dot(n, o), 0.0), f0); }
 
+// One light on the paint. Written out per light in shade(), not as a loop: a compiler that does not unroll so long a
+// body would keep the flake code alive for lights that show none.
+vec3 paint_light(vec3 i, vec3 radiance, vec3 n, vec3 o, vec2 texel, float lod, float show_flakes) {
+  return radiance * (max(dot(n, i), 0.0) * paint_factor(n, i, o, texel, lod, show_flakes));
+}
+
 // Returns linear colour and coverage (premultiplied).
 vec4 shade(vec3 n, vec3 o, vec3 p, float open, float distance_mm) {
   vec3 r = mirror_direction(n, o);
@@ -71,13 +64,19 @@ vec4 shade(vec3 n, vec3 o, vec3 p, float open, float distance_mm) {
   vec2 texel = vec2(0.0);
   float lod = 0.0;
 #if HAS_FLAKES
-  texel = surface_texel(p, n);
-  lod = surface_lod(distance_mm, dot(n, o));
+  texel = surface_texel(p, n, u_texels_per_mm);
+  lod = surface_lod(distance_mm, dot(n, o), u_pixel_texels);
 #endif
-  for (int k = 0; k < NUM_LIGHTS; ++k) {
-    float cosine = max(dot(n, u_light_dir[k]), 0.0);
-    sum += u_light[k] * (cosine * paint_factor(n, u_light_dir[k], o, texel, lod, k < FLAKE_LIGHTS ? 1.0 : 0.0));
-  }
+  sum += paint_light(u_light_dir[0], u_light[0], n, o, texel, lod, FLAKE_LIGHTS > 0 ? 1.0 : 0.0);
+#if NUM_LIGHTS > 1
+  sum += paint_light(u_light_dir[1], u_light[1], n, o, texel, lod, FLAKE_LIGHTS > 1 ? 1.0 : 0.0);
+#endif
+#if NUM_LIGHTS > 2
+  sum += paint_light(u_light_dir[2], u_light[2], n, o, texel, lod, FLAKE_LIGHTS > 2 ? 1.0 : 0.0);
+#endif
+#if NUM_LIGHTS > 3
+  sum += paint_light(u_light_dir[3], u_light[3], n, o, texel, lod, FLAKE_LIGHTS > 3 ? 1.0 : 0.0);
+#endif
   sum *= open;
 #endif
 #if STUDIO

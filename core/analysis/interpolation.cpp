@@ -28,7 +28,7 @@ struct Row {
 };
 
 std::string row_name(const FlakeFrame& frame, std::size_t row) {
-  const auto slices = static_cast<std::size_t>(frame.layout.slice_count());
+  const auto slices = static_cast<std::size_t>(std::max(frame.layout.slice_count(), 1));
   return "row " + std::to_string(row) + " (level " + std::to_string(row / slices) + ", slice " +
          std::to_string(row % slices) + ")";
 }
@@ -253,7 +253,8 @@ Result<InterpolatableData> build_interpolatable(const std::vector<ClusteredPaint
   data.range = range_of(paints);
   data.row_mass = common_mass(paints);
 
-  const auto row_count = static_cast<std::size_t>(data.frame.level_count * data.frame.layout.slice_count());
+  const std::size_t row_count =
+      std::size_t{data.frame.level_count} * static_cast<std::size_t>(data.frame.layout.slice_count());
   std::vector<std::optional<Result<Row>>> rows(row_count);
   for_each_row(row_count, threads, progress,
                [&](std::size_t row) { rows[row] = build_row(paints, row, data.range, data.row_mass); });

@@ -14,16 +14,6 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
-/// surface_texel and surface_lod of surface_fragment.glsl.
-dvec2 surface_texel(const dvec3& p, const dvec3& n, double texels_per_mm) {
-  const dvec3 a(std::abs(n.x), std::abs(n.y), std::abs(n.z));
-  const dvec2 q = a.z >= std::max(a.x, a.y) ? dvec2(p.x, p.y) : (a.y >= a.x ? dvec2(p.x, p.z) : dvec2(p.y, p.z));
-  return q * texels_per_mm;
-}
-double surface_lod(double distance_mm, double co, double pixel_texels) {
-  return std::log2(std::max(distance_mm * pixel_texels, 1e-4)) - 0.5 * std::log2(std::max(co, 0.05)) + 0.585;
-}
-
 using Model = core::PaintModel<double>;
 
 /// flake_factor as FLAKE_TAPS 1 compiles it: C++ has the four-tap text, which at a node is that node's one tap.
@@ -92,8 +82,8 @@ CpuPicture shade_sphere(float radius_mm, const gles::View& view, const gles::Lig
       const dvec3 n = p / radius;
       const dvec3 o = -ray;
       const double co = glm::dot(n, o);
-      const dvec2 texel = surface_texel(p, n, texels_per_mm);
-      const double lod = surface_lod(distance, co, pixel_texels);
+      const dvec2 texel = model.surface_texel(p, n, texels_per_mm);
+      const double lod = model.surface_lod(distance, co, pixel_texels);
       dvec3 sum(0.0);
       for (std::size_t k = 0; k < lighting.lights.size(); ++k) {
         const dvec3 i(lighting.lights[k].direction);

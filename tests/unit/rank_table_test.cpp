@@ -98,6 +98,7 @@ TEST(RankTable, ManyTuplesStayClose) {
   double worst = 0.0, mean = 0.0;
   for (int round = 0; round < 40; ++round) {
     std::vector<std::uint32_t> mass;
+    mass.reserve(246);
     for (int t = 0; t < 246; ++t)  // the brighter the rarer, as in slices
       mass.push_back(1 +
                      static_cast<std::uint32_t>(-2000.0 * std::log(uniform(random, 1e-9, 1)) * std::exp(-0.02 * t)));

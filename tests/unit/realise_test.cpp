@@ -141,10 +141,10 @@ TEST(Realise, ReusesItsBuffersAndClearsTheRest) {
 /// Mean linear RGB of uniform Lab in a box by brute force, n^3 midpoints.
 glm::dvec3 mean_by_grid(const glm::dvec3& lo, const glm::dvec3& hi, int n) {
   glm::dvec3 sum(0.0);
-  for (int i = 0; i < n * n * n; ++i) {
-    const glm::dvec3 u(i % n + 0.5, i / n % n + 0.5, i / n / n + 0.5);
-    sum += linear_from_lab(lo + (hi - lo) * u / static_cast<double>(n));
-  }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k)
+        sum += linear_from_lab(lo + (hi - lo) * (glm::dvec3(i, j, k) + 0.5) / static_cast<double>(n));
   return sum / (static_cast<double>(n) * n * n);
 }
 

@@ -66,7 +66,7 @@ Patch build_interior() {
   Patch deck = grid(rows, columns, [&](int r, int c) {
     const double t = static_cast<double>(r) / (rows - 1);
     const double x = rear_x_mm + (front_x_mm - rear_x_mm) * t;
-    const double half = 830.0 - 150.0 * std::pow(std::abs(2.0 * t - 1.0), 4.0);
+    const double half = 775.0 - 130.0 * std::pow(std::abs(2.0 * t - 1.0), 4.0);
     return Vec3{x, half * (2.0 * c / (columns - 1) - 1.0), s.deck_z_mm};
   });
   deck.normals.assign(deck.positions.size(), Vec3{0.0, 0.0, 1.0});

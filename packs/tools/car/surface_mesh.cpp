@@ -147,11 +147,10 @@ class Refinement {
 
   [[nodiscard]] bool wants_split(std::uint32_t a, std::uint32_t b) {
     const double l = length(a, b);
-
+    if (l < 2.0 * quality_.shortest_edge_mm) return false;
     const Tolerance& at_a = tolerances_[a];
     const Tolerance& at_b = tolerances_[b];
     if (l > 0.5 * (at_a.longest_edge_mm + at_b.longest_edge_mm)) return true;
-    if (l < 2.0 * quality_.shortest_edge_mm) return false;
     const double bend_deg = std::fmin(at_a.bend_deg, at_b.bend_deg);
     if (glm::dot(normals_[a], normals_[b]) < std::cos(glm::radians(bend_deg))) return true;
     const double error_deg = std::fmin(at_a.normal_error_deg, at_b.normal_error_deg);

@@ -40,7 +40,7 @@ struct Tolerance {
 /// Where to spend triangles.
 struct MeshQuality {
   std::function<Tolerance(const Vec3&)> tolerance;
-  double shortest_edge_mm;  ///< bends are not followed below twice this
+  double shortest_edge_mm;  ///< never split below twice this
 };
 
 [[nodiscard]] SurfaceMesh wrap_field(const Field& field, const WrapBox& box);
