@@ -1,10 +1,12 @@
 // From scene-linear sRGB to the screen's bytes, written once for shader and CPU (same rules as paint_model.glsl).
 
 // Tone curve on the largest channel alone, all three scaled alike, so that a paint keeps its hue and saturation: linear
-// up to 0.70, then an exponential shoulder towards 1. Only what would be far brighter than the screen's white loses
-// colour, as film and eyes do: half way at 16 times white.
+// up to 0.45, then a rational shoulder (slope 1 where it begins, 1 far away) that still tells 2 from 4, because a silver
+// flashes that bright. Only what would be far brighter than the screen's white loses colour, as film and eyes do: half
+// way at 16 times white.
 real tone_curve(real x) {
-  return x <= R(0.70) ? x : R(0.70) + R(0.30) * (R(1.0) - exp2((R(0.70) - x) * R(4.809)));  // log2(e)/0.30
+  real over = max(x - R(0.45), R(0.0));
+  return x <= R(0.45) ? x : R(0.45) + over / (R(1.0) + over / R(0.55));
 }
 real srgb_curve(real x) {
   return x <= R(0.0031308) ? x * R(12.92) : R(1.055) * pow(x, R(0.4166666667)) - R(0.055);

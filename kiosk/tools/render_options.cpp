@@ -13,8 +13,8 @@ namespace {
 /// Rays per vertex when a scene is built on the fly: a quick look, a scene pack has more.
 constexpr int quick_rays = 24;
 constexpr float sphere_radius_mm = 300.0f;
-constexpr float capsule_radius_mm = 120.0f;
-constexpr float capsule_length_mm = 420.0f;
+constexpr float capsule_radius_mm = 75.0f;
+constexpr float capsule_length_mm = 400.0f;
 
 }  // namespace
 

@@ -85,6 +85,7 @@ TEST(FlakeClusters, FewColoursAreKeptExactly) {
   std::mt19937 random(21);
   const auto colours = cloud(random, 40, glm::vec3(50.0f), glm::vec3(20.0f));
   std::vector<glm::vec3> texels;
+  texels.reserve(5000);
   for (int i = 0; i < 5000; ++i) texels.push_back(colours[random() % colours.size()]);
   const auto clusters = cluster_texels(texels, {});
   EXPECT_EQ(clusters.size(), 40u);
@@ -104,6 +105,7 @@ TEST(FlakeClusters, FlatClouds) {
   check_partition(cloud(random, 3000, {40, 0, 0}, {20, 0, 0}), 50);  // grey: on a line
   check_partition(cloud(random, 3000, {40, 0, 0}, {20, 5, 0}), 50);  // in a plane
   std::vector<glm::vec3> lattice;
+  lattice.reserve(1000);
   for (int i = 0; i < 1000; ++i) lattice.emplace_back(i % 10, i / 10 % 10, i / 100);
   check_partition(lattice, 50);
 }

@@ -214,7 +214,7 @@ TEST(Transport, StiffCentres) {
     Side source, target;
     for (int i = 0; i < 64; ++i) {
       source.centres.emplace_back(offset + i % 4, i / 4 % 4, i / 16);
-      target.centres.emplace_back(offset + i % 4 + 0.5, i / 4 % 4 + 0.5, i / 16 + 0.5);
+      target.centres.push_back(source.centres.back() + 0.5);
       source.mass.push_back(1 + static_cast<std::int64_t>(random() % 5));
       target.mass.push_back(1 + static_cast<std::int64_t>(random() % 5));
     }

@@ -15,7 +15,7 @@ namespace lackwerk::packs {
 /// A sphere resting on z = 0, with cameras 'hero' and 'macro'; no floor.
 [[nodiscard]] Scene build_sphere(float radius_mm);
 
-/// A lying capsule (a cylinder with round ends) along y, resting on z = 0; `length_mm` is the cylinder without its
+/// A standing capsule (a cylinder with round ends), resting on z = 0; `length_mm` is the cylinder without its
 /// ends. Cameras 'hero' and 'macro'; no floor.
 [[nodiscard]] Scene build_capsule(float radius_mm, float length_mm);
 

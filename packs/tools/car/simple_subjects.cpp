@@ -13,7 +13,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr int rings_per_quarter = 40;
 constexpr int around = 160;
 
-/// A lying capsule along y; with length 0 it is a sphere. Normals are exact.
+/// A standing capsule; with length 0 it is a sphere. It rests on z = 0. Normals are exact.
 car::Patch capsule(double radius, double length) {
   std::vector<double> angles;
   std::vector<double> shifts;
@@ -34,10 +34,11 @@ car::Patch capsule(double radius, double length) {
   const auto direction = [&](int r, int c) {
     const double turn = 2.0 * pi * r / around;
     const double polar = angles[static_cast<std::size_t>(c)];
-    return car::Vec3{-std::sin(polar) * std::sin(turn), std::cos(polar), std::sin(polar) * std::cos(turn)};
+    return car::Vec3{std::sin(polar) * std::cos(turn), -std::sin(polar) * std::sin(turn), std::cos(polar)};
   };
   car::Patch patch = car::grid(around + 1, columns, [&](int r, int c) {
-    return direction(r, c) * radius + car::Vec3{0.0, shifts[static_cast<std::size_t>(c)], radius};
+    return direction(r, c) * radius +
+           car::Vec3{0.0, 0.0, radius + 0.5 * length + shifts[static_cast<std::size_t>(c)]};
   });
   for (int r = 0; r <= around; ++r) {
     for (int c = 0; c < columns; ++c) patch.normals.push_back(direction(r, c));
@@ -49,11 +50,11 @@ Scene subject(const std::string& name, float radius_mm, float length_mm) {
   Scene scene;
   scene.name = name;
   car::add_parts(scene.parts, capsule(radius_mm, length_mm), name, SurfaceKind::paint);
-  const glm::vec3 middle{0.0f, 0.0f, radius_mm};
+  const glm::vec3 middle{0.0f, 0.0f, radius_mm + 0.5f * length_mm};
   const float reach = radius_mm + 0.5f * length_mm;
   constexpr float hero_fov_deg = 28.0f;
-  // Far enough that the whole subject fits a 16:9 frame with some air.
-  const float distance = std::fmax(radius_mm * 5.2f, reach * 3.2f);
+  // Far enough that the whole subject fits the frame's height with some air: tan(14 deg) * 4.6 = 1.15.
+  const float distance = reach * 4.6f;
   scene.cameras.push_back({"hero", middle + glm::vec3{distance * 0.94f, 0.0f, distance * 0.34f}, middle, hero_fov_deg});
   // About 60 mm of the surface, seen from 150 mm along a slanted direction.
   const glm::vec3 outward{0.76f, 0.0f, 0.65f};
