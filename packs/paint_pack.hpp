@@ -19,7 +19,7 @@ namespace lackwerk::packs {
 
 /// Written into new packs; a reader refuses packs whose minimum_reader is above its own schema version.
 inline constexpr std::uint32_t paint_schema_version = 1;
-inline constexpr std::string_view pack_tool_version = "lackwerk 0.1.0";
+inline constexpr std::string_view pack_tool_version = "lackwerk " LACKWERK_VERSION;
 
 /// What the builder measured on one paint. 1-Wasserstein distances in Lab between a slice and its clusters.
 struct PaintError {

@@ -21,7 +21,7 @@ int run(int argc, char** argv) {
   const auto options = lackwerk::kiosk::parse_options(argc, argv);
   if (!options) return report(options.error());
   if (options->help || options->version) {
-    std::fputs(options->help ? lackwerk::kiosk::help_text() : "lackwerk-kiosk 0.1.0\n", stdout);
+    std::fputs(options->help ? lackwerk::kiosk::help_text() : "lackwerk-kiosk " LACKWERK_VERSION "\n", stdout);
     return exit_done;
   }
   std::signal(SIGINT, on_signal);

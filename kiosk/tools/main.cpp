@@ -22,6 +22,7 @@ namespace {
 int run(int argc, char** argv) {
   CLI::App app{"Lackwerk: measured car paints that morph. Exit codes: 0 done, 1 the run failed, 2 usage.", "lackwerk"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "lackwerk " LACKWERK_VERSION);
   int exit_code = exit_done;
   add_capture_command(app, exit_code);
   add_pack_build_command(app, exit_code);

@@ -37,8 +37,7 @@ car::Patch capsule(double radius, double length) {
     return car::Vec3{std::sin(polar) * std::cos(turn), -std::sin(polar) * std::sin(turn), std::cos(polar)};
   };
   car::Patch patch = car::grid(around + 1, columns, [&](int r, int c) {
-    return direction(r, c) * radius +
-           car::Vec3{0.0, 0.0, radius + 0.5 * length + shifts[static_cast<std::size_t>(c)]};
+    return direction(r, c) * radius + car::Vec3{0.0, 0.0, radius + 0.5 * length + shifts[static_cast<std::size_t>(c)]};
   });
   for (int r = 0; r <= around; ++r) {
     for (int c = 0; c < columns; ++c) patch.normals.push_back(direction(r, c));

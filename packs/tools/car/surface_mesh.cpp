@@ -1,4 +1,5 @@
 #include "packs/tools/car/surface_mesh.hpp"
+#include "core/check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -195,9 +196,12 @@ SurfaceMesh wrap_field(const Field& field, const WrapBox& box) { return BoxLatti
 
 void refine(SurfaceMesh& mesh, const Field& field, const MeshQuality& quality) {
   Refinement refinement(mesh, field, quality);
+  // A tolerance that no edge can meet would double the mesh every round; the car needs under 100,000.
   constexpr int max_rounds = 16;
+  constexpr std::size_t max_triangles = 1'000'000;
   for (int round = 0; round < max_rounds; ++round) {
     if (!refinement.run_round()) break;
+    check_at_most(mesh.triangles.size(), max_triangles, "triangles of a refined mesh");
   }
 }
 
