@@ -55,8 +55,6 @@ gles::Image contact_sheet(const std::vector<Tile>& tiles, int columns) {
   return sheet;
 }
 
-gles::Image stacked(const Tile& upper, const Tile& lower) { return contact_sheet({upper, lower}, 1); }
-
 gles::Image halved(const gles::Image& image) {
   gles::Image out(image.width / 2, image.height / 2);
   for (int y = 0; y < out.height; ++y)

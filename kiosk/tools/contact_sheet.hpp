@@ -20,9 +20,6 @@ struct Tile {
 /// captions below in DejaVu Sans (left out where that font is not installed).
 [[nodiscard]] gles::Image contact_sheet(const std::vector<Tile>& tiles, int columns);
 
-/// Two pictures above each other, each under a heading: "now" and "before".
-[[nodiscard]] gles::Image stacked(const Tile& upper, const Tile& lower);
-
 /// Half the size in both directions, each pixel the mean of four (in encoded values). For sheets.
 [[nodiscard]] gles::Image halved(const gles::Image& image);
 

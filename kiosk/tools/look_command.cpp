@@ -85,6 +85,16 @@ Result<void> write_jpeg(const gles::Image& image, const std::filesystem::path& p
   return fail(path.string(), "", buffer.geterror(), "choose a folder that can be written");
 }
 
+/// before.jpg and this sheet beside each other at half size; nothing where there was no sheet before.
+Result<void> write_comparison(const gles::Image& sheet, const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "before.jpg")) return {};
+  OIIO::ImageBuf file((folder / "before.jpg").string());
+  gles::Image before(file.spec().width, file.spec().height);
+  if (file.spec().nchannels != 3 || !file.get_pixels(file.roi(), OIIO::TypeDesc::UINT8, before.rgb.data()))
+    return fail((folder / "before.jpg").string(), "", "cannot be read: " + file.geterror(), "remove it");
+  return write_jpeg(contact_sheet({{"before", halved(before)}, {"now", halved(sheet)}}, 2), folder / "compare.jpg");
+}
+
 /// All shots of the sheet, in order.
 std::vector<std::pair<std::string, std::function<Result<gles::Image>()>>> shots(Studio& studio) {
   const auto& paints = studio.car->pack().paint().paints;
@@ -138,15 +148,18 @@ Result<void> make_sheet(const LookOptions& options) {
   if (code) return fail(options.folder, "-o", code.message(), "choose a folder that can be written");
   if (std::filesystem::exists(folder / "sheet.jpg"))
     std::filesystem::rename(folder / "sheet.jpg", folder / "before.jpg", code);
-  return write_jpeg(contact_sheet(tiles, columns), folder / "sheet.jpg");
+  const gles::Image sheet = contact_sheet(tiles, columns);
+  if (auto written = write_jpeg(sheet, folder / "sheet.jpg"); !written) return written;
+  return write_comparison(sheet, folder);
 }
 
 }  // namespace
 
 void add_look_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LookOptions>();
-  CLI::App* command = app.add_subcommand(
-      "look", "the fixed set of pictures every change is judged on: sheet.jpg, and the last one as before.jpg");
+  CLI::App* command = app.add_subcommand("look",
+                                         "the fixed set of pictures every change is judged on: sheet.jpg, the last one "
+                                         "as before.jpg, both as compare.jpg");
   command->add_option("--pack", options->pack, "paint pack (.lwp)")->required();
   command->add_option("--scene", options->scene, "scene pack (.lws), or builtin")->capture_default_str();
   command->add_option("--backend", options->backend, "egl or osmesa")->capture_default_str();
