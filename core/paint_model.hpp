@@ -43,7 +43,7 @@ struct PaintModel {
   vec3 u_flake_fill{T(0)};  ///< see studio.glsl
   real u_studio_gain = T(0);
   vec2 u_floor_shadow{T(0)};
-  const PaintTextures* textures = nullptr;  ///< may be null for a paint without table and flakes
+  const PaintTextures* textures = &no_textures();  ///< never null
 
   const vec3 LINEAR_FROM_XYZ_R = linear_from_xyz_row(0);
   const vec3 LINEAR_FROM_XYZ_G = linear_from_xyz_row(1);
@@ -78,12 +78,10 @@ struct PaintModel {
   static int index(real x) { return static_cast<int>(x); }
 
   vec3 fetch_chi(real u, real v) const {
-    if (textures == nullptr) return vec3(T(1));
     const auto c = textures->sample_chi(static_cast<double>(u), static_cast<double>(v));
     return vec3(T(c.x), T(c.y), T(c.z));
   }
   vec3 fetch_mean(real bin_h, real bin_i) const {
-    if (textures == nullptr) return vec3(T(0));
     const auto m = textures->mean_at(index(bin_h), index(bin_i));
     return vec3(T(m.x), T(m.y), T(m.z));
   }

@@ -81,7 +81,14 @@ const std::uint8_t* PaintTextures::corner_texel(int x, int row) const {
          (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) * 3 + static_cast<std::size_t>(x)) * 4;
 }
 
+const PaintTextures& no_textures() {
+  static const PaintTextures none;
+  return none;
+}
+
 const std::uint8_t* PaintTextures::random_texel(std::int64_t x, std::int64_t y) const {
+  static constexpr std::uint8_t zero[4] = {0, 0, 0, 0};
+  if (random.empty()) return zero;
   constexpr std::int64_t mask = random_edge - 1;
   return &random[static_cast<std::size_t>((y & mask) * random_edge + (x & mask)) * 4];
 }

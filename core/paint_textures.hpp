@@ -46,6 +46,9 @@ struct PaintTextures {
   [[nodiscard]] const std::uint8_t* random_texel(std::int64_t x, std::int64_t y) const;
 };
 
+/// What a paint without table and flakes reads: chi = 1, mean 0, no slices.
+[[nodiscard]] const PaintTextures& no_textures();
+
 /// The parts that depend on the pack alone: slice map, rank table, random numbers (from the pack's seed).
 [[nodiscard]] PaintTextures make_static_textures(const InterpolatablePaint& paint);
 

@@ -23,7 +23,7 @@ constexpr float farthest_share = 3.0f;
 core::Weights first_paint(int paint_count) {
   std::vector<double> w(static_cast<std::size_t>(paint_count), 0.0);
   w.front() = 1.0;
-  return core::Weights::uniform(std::move(w));
+  return core::Weights::uniform(w);
 }
 
 State::State(int paint_count, std::vector<packs::Camera> cameras)

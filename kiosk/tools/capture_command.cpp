@@ -48,7 +48,7 @@ fs::path find_recipe(const std::string& name) {
   if (fs::exists(name, code) || fs::path(name).has_parent_path()) return name;
   for (const fs::path& folder : recipe_folders())
     for (const char* ending : {"", ".toml"})
-      if (const fs::path found = folder / (name + ending); fs::is_regular_file(found, code)) return found;
+      if (fs::path found = folder / (name + ending); fs::is_regular_file(found, code)) return found;
   return name;
 }
 

@@ -30,7 +30,7 @@ Result<core::Weights> read_weights(const RenderOptions& options, const core::Int
   if (options.weights) {
     auto all = parse_weights(*options.weights, paint.paints.size(), "--weights");
     if (!all) return tl::unexpected(all.error());
-    weights = core::Weights::uniform(std::move(*all));
+    weights = core::Weights::uniform(*all);
   }
   if (options.lightness) {
     auto group = parse_weights(*options.lightness, paint.paints.size(), "--lightness");

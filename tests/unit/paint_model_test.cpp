@@ -118,7 +118,7 @@ TEST(PaintModel, FloatFollowsDouble) {
     for (double d = -0.05; d <= 0.05; d += 0.002) {
       const Vec i = direction(t, 0), o = direction(t + d, std::numbers::pi);
       const double a = exact.paint_factor(up, i, o, {0, 0}, 0, 0).x;
-      const double b = quick.paint_factor({0, 0, 1}, glm::vec3(i), glm::vec3(o), {0, 0}, 0, 0).x;
+      const auto b = static_cast<double>(quick.paint_factor({0, 0, 1}, glm::vec3(i), glm::vec3(o), {0, 0}, 0, 0).x);
       worst = std::max(worst, std::abs(a - b) / (a + 1e-3));
     }
   EXPECT_LT(worst, 2e-3) << "largest relative deviation of float in a lobe of m = 0.013";

@@ -75,8 +75,9 @@ void add_intake_blades(FacePatches& face, const BodyField& body, const Outline& 
     // The outline's extent at this height, by walking across it.
     double from = 1e9;
     double to = -1e9;
-    constexpr double reach_mm = 1000.0;
-    for (double y = 0.0; y < reach_mm; y += 1.0) {
+    constexpr int reach_mm = 1000;
+    for (int y_mm = 0; y_mm < reach_mm; ++y_mm) {
+      const double y = y_mm;
       if (intake.distance({y, z}) >= 0.0) continue;
       from = std::fmin(from, y);
       to = std::fmax(to, y);
@@ -119,7 +120,9 @@ void add_tail(FacePatches& face, const BodyField& body, const GraphicsShape& gra
 /// The shark fin on the roof.
 Patch build_aerial(const BodyField& body, const FaceShape& s) {
   double roof = 1200.0;
-  for (double step = 200.0; step > 1e-3; step *= 0.5) {
+  constexpr int halvings = 18;  // 200 mm to below a micrometre
+  double step = 200.0;
+  for (int k = 0; k < halvings; ++k, step *= 0.5) {
     if (body.value({s.aerial_x_mm, 0.0, roof + step}) < 0.0) roof += step;
   }
   constexpr int stations = 15;

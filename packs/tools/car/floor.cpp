@@ -19,8 +19,10 @@ Patch build_floor(const FloorShape& shape) {
   });
   // Rings around that rectangle that grow wider and turn into a circle.
   std::vector<Vec3> edge;
+  edge.reserve(2 * static_cast<std::size_t>(shape.cells_along + shape.cells_across));
   const auto at = [&](int r, int c) {
-    return floor.positions[static_cast<std::size_t>(r * (shape.cells_across + 1) + c)];
+    return floor.positions[static_cast<std::size_t>(r) * static_cast<std::size_t>(shape.cells_across + 1) +
+                           static_cast<std::size_t>(c)];
   };
   for (int r = 0; r < shape.cells_along; ++r) edge.push_back(at(r, 0));
   for (int c = 0; c < shape.cells_across; ++c) edge.push_back(at(shape.cells_along, c));
