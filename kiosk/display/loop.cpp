@@ -43,10 +43,16 @@ Result<void> make_folder(const std::string& folder) {
   return {};
 }
 
-Result<void> record_frame(Stage& stage, const std::string& folder, std::uint64_t frame) {
+/// As shown, or smoother: with several samples the frame is drawn again, moved by parts of a pixel.
+Result<void> record_frame(Stage& stage, const State& state, const Options& options, std::uint64_t frame) {
   char name[16];
   std::snprintf(name, sizeof name, "%06u.png", static_cast<unsigned>(frame % 1'000'000));
-  return gles::write_png(stage.framebuffer().read(), (std::filesystem::path(folder) / name).string());
+  const gles::Image image =
+      options.record_samples == 1
+          ? stage.framebuffer().read()
+          : stage.renderer().still(gles::View::from(state.camera()), lighting_of(usual_mood(state.camera().name)),
+                                   stage.framebuffer(), options.record_samples);
+  return gles::write_png(image, (std::filesystem::path(options.record) / name).string());
 }
 
 /// What was asked of the loop, minus the stage: so that run() reads as the loop it is.
@@ -115,7 +121,7 @@ Result<RunSummary> run(const Options& options) {
     const double now_ms = virtual_clock ? static_cast<double>(summary.frames) * frame_ms : ms_since(start);
     if (auto stepped = session.step(now_ms); !stepped) return tl::unexpected(stepped.error());
     if (!options.record.empty())
-      if (auto written = record_frame(**stage, options.record, summary.frames); !written)
+      if (auto written = record_frame(**stage, session.state, options, summary.frames); !written)
         return tl::unexpected(written.error());
     ++summary.frames;
     if (virtual_clock) {
@@ -126,7 +132,7 @@ Result<RunSummary> run(const Options& options) {
     std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(
                                               std::chrono::duration<double, std::milli>(now_ms + frame_ms)));
   }
-  summary.drawn = (*stage)->renderer().draw_count();
+  summary.drawn = session.drawn_ms.size();
   if (!options.screenshot.empty()) {
     const auto image = (*stage)->renderer().still(gles::View::from(session.state.camera()),
                                                   lighting_of(usual_mood(session.state.camera().name)),

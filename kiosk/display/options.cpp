@@ -13,7 +13,29 @@ tl::unexpected<Error> usage(std::string option, std::string what, std::string re
   return fail("", std::move(option), std::move(what), std::move(remedy), ErrorKind::usage);
 }
 
-enum Option { pack = 1, scene, platform, size, frames, input_script, screenshot, record, help, version };
+Result<int> read_count(const char* option, const char* text, int most) {
+  int count = 0;
+  const char* end = text + std::strlen(text);
+  const auto [at, code] = std::from_chars(text, end, count);
+  if (code == std::errc{} && at == end && count >= 1 && count <= most) return count;
+  return usage(option, "'" + std::string(text) + "' is not a number it can take", "give 1 to " + std::to_string(most));
+}
+
+constexpr int max_record_samples = 64;
+
+enum Option {
+  pack = 1,
+  scene,
+  platform,
+  size,
+  frames,
+  input_script,
+  screenshot,
+  record,
+  record_samples,
+  help,
+  version
+};
 
 }  // namespace
 
@@ -28,13 +50,14 @@ const char* help_text() {
          "  --frames N              run N frames on a virtual clock of 30 a second, then end;\n"
          "                          without it: real time, until the tour ends or SIGTERM\n"
          "  --record DIR            write every frame to DIR/000000.png and so on\n"
+         "  --record-samples N      samples a pixel of recorded frames, 1 (default: as shown) to 64\n"
          "  --screenshot OUT.png    write the last picture in still quality\n"
          "  --help, --version\n\n"
          "Exit codes: 0 done, 1 the run failed, 2 usage.\n";
 }
 
 Result<Options> parse_options(int argc, char** argv) {
-  static constexpr std::array<::option, 11> known{{{"pack", required_argument, nullptr, pack},
+  static constexpr std::array<::option, 12> known{{{"pack", required_argument, nullptr, pack},
                                                    {"scene", required_argument, nullptr, scene},
                                                    {"platform", required_argument, nullptr, platform},
                                                    {"size", required_argument, nullptr, size},
@@ -42,6 +65,7 @@ Result<Options> parse_options(int argc, char** argv) {
                                                    {"input-script", required_argument, nullptr, input_script},
                                                    {"screenshot", required_argument, nullptr, screenshot},
                                                    {"record", required_argument, nullptr, record},
+                                                   {"record-samples", required_argument, nullptr, record_samples},
                                                    {"help", no_argument, nullptr, help},
                                                    {"version", no_argument, nullptr, version},
                                                    {nullptr, 0, nullptr, 0}}};
@@ -71,12 +95,9 @@ Result<Options> parse_options(int argc, char** argv) {
         break;
       }
       case frames: {
-        int count = 0;
-        const char* end = optarg + std::strlen(optarg);
-        const auto [at, code] = std::from_chars(optarg, end, count);
-        if (code != std::errc{} || at != end || count < 1 || count > max_frames)
-          return usage("--frames", "'" + std::string(optarg) + "' is not a number of frames", "give 1 to 1000000");
-        options.frames = count;
+        auto count = read_count("--frames", optarg, max_frames);
+        if (!count) return tl::unexpected(count.error());
+        options.frames = *count;
         break;
       }
       case input_script:
@@ -88,6 +109,12 @@ Result<Options> parse_options(int argc, char** argv) {
       case record:
         options.record = optarg;
         break;
+      case record_samples: {
+        auto count = read_count("--record-samples", optarg, max_record_samples);
+        if (!count) return tl::unexpected(count.error());
+        options.record_samples = *count;
+        break;
+      }
       case help:
         options.help = true;
         return options;

@@ -18,6 +18,7 @@ struct Options {
   Size size;
   std::optional<int> frames;  ///< run this many on a virtual clock of 30 a second, then end
   std::string input_script, screenshot, record;
+  int record_samples = 1;  ///< samples a pixel of recorded frames
   bool help = false, version = false;
 };
 

@@ -28,6 +28,7 @@ expect 2 "platform" "${good[@]}" --platform vulkan
 expect 2 "size" "${good[@]}" --size 0x0
 expect 2 "size" "${good[@]}" --size 99999x10
 expect 2 "frames" "${good[@]}" --frames -3
+expect 2 "record-samples" "${good[@]}" --record-samples 0
 expect 1 "no/such" --pack no/such.lwp --scene "$demo/sphere.lws"
 expect 1 "no/such" --pack "$demo/demo.lwp" --scene no/such.lws
 expect 1 "demo.lwp" --pack "$demo/demo.lwp" --scene "$demo/demo.lwp"
