@@ -17,6 +17,19 @@ namespace lackwerk::core {
 /// Where a quantity came from. Kept through every step and shown to dealers.
 enum class Provenance : std::uint8_t { measured = 0, published_fit = 1, simulated = 2 };
 
+/// The word for it in every file and on every screen.
+[[nodiscard]] constexpr const char* provenance_name(Provenance provenance) {
+  switch (provenance) {
+    case Provenance::measured:
+      return "measured";
+    case Provenance::published_fit:
+      return "published-fit";
+    case Provenance::simulated:
+      break;
+  }
+  return "simulated";
+}
+
 /// One Cook-Torrance lobe with Beckmann distribution D = exp(-tan^2/m^2) / (m^2 cos^4) (no 1/pi: it stands outside).
 struct Lobe {
   glm::dvec3 s{0.0};  ///< weight per linear sRGB channel, >= 0

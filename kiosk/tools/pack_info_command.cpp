@@ -16,27 +16,15 @@ struct InfoOptions {
   bool json = false;
 };
 
-const char* provenance_name(core::Provenance provenance) {
-  switch (provenance) {
-    case core::Provenance::measured:
-      return "measured";
-    case core::Provenance::published_fit:
-      return "published-fit";
-    case core::Provenance::simulated:
-      break;
-  }
-  return "simulated";
-}
-
 nlohmann::ordered_json paint_json(const packs::PaintPack& pack, std::size_t k) {
   const core::PaintIdentity& identity = pack.paint().paints[k].identity;
   const packs::PaintError& error = pack.info().errors[k];
   return {{"name", identity.name},
           {"source", identity.source},
           {"provenance",
-           {{"lobes", provenance_name(identity.lobes)},
-            {"flakes", provenance_name(identity.flakes)},
-            {"coat", provenance_name(identity.coat)}}},
+           {{"lobes", core::provenance_name(identity.lobes)},
+            {"flakes", core::provenance_name(identity.flakes)},
+            {"coat", core::provenance_name(identity.coat)}}},
           {"errors",
            {{"flake_w1_mean_lab", error.flake_w1_mean},
             {"flake_w1_max_lab", error.flake_w1_max},
@@ -78,8 +66,8 @@ void print_text(const packs::PaintPack& pack) {
     print("  " + identity.name + ": " + fixed(static_cast<double>(packs::paint_bytes(paint, k)) / 1e6, 2) +
           " MB, flake W1 mean " + fixed(static_cast<double>(info.errors[k].flake_w1_mean), 2) + " max " +
           fixed(static_cast<double>(info.errors[k].flake_w1_max), 2) + " Lab; lobes " +
-          provenance_name(identity.lobes) + ", flakes " + provenance_name(identity.flakes) + ", coat " +
-          provenance_name(identity.coat) + "; " + identity.source);
+          core::provenance_name(identity.lobes) + ", flakes " + core::provenance_name(identity.flakes) + ", coat " +
+          core::provenance_name(identity.coat) + "; " + identity.source);
   }
 }
 

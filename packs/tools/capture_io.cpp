@@ -218,18 +218,6 @@ std::string quoted(const std::string& text) {
   }
   return out + "\"";
 }
-const char* provenance_text(core::Provenance provenance) {
-  switch (provenance) {
-    case core::Provenance::measured:
-      return "measured";
-    case core::Provenance::published_fit:
-      return "published-fit";
-    case core::Provenance::simulated:
-      break;
-  }
-  return "simulated";
-}
-
 std::string paint_toml(const Capture& capture) {
   const auto& paint = capture.analytic;
   std::ostringstream out;
@@ -248,9 +236,9 @@ std::string paint_toml(const Capture& capture) {
   out << "CT_diffuse = " << rgb_text(paint.diffuse) << "\nCT_coeffs = " << list_text(s)
       << "\nCT_F0s = " << list_text(f0) << "\nCT_spreads = " << list_text(m) << "\n";
   if (paint.table) out << "BRDFcolors = \"colour.exr\"\n";
-  out << "\n[provenance]\nlobes = \"" << provenance_text(capture.identity.lobes) << "\"\nflakes = \""
-      << provenance_text(capture.identity.flakes) << "\"\ncoat = \"" << provenance_text(capture.identity.coat)
-      << "\"\n";
+  out << "\n[provenance]\nlobes = \"" << core::provenance_name(capture.identity.lobes) << "\"\nflakes = \""
+      << core::provenance_name(capture.identity.flakes) << "\"\ncoat = \""
+      << core::provenance_name(capture.identity.coat) << "\"\n";
   if (capture.layout.slice_count() == 0) return out.str();
   for (const std::uint16_t entry : capture.layout.lut) lut.push_back(number_text(entry));
   out << "\n[flakes]\nBTFflakes = \"flakes\"\nedge_texels = " << capture.edge_texels
