@@ -37,6 +37,31 @@ struct QuantisedCuboid {
 };
 static_assert(sizeof(QuantisedCuboid) == 12);
 
+/// How a paint's random cell widths were found.
+enum class LifeOrigin : std::uint8_t {
+  assumed = 0,  ///< no measurement: a life of default_life_deg
+  slices = 1,  ///< from the correlation of neighbouring slices, which only bounds it where lives are shorter than a bin
+  fine = 2,    ///< from the capture's own measurement at fine angle steps
+};
+
+/// Rump et al. 2008 (quoted in Golla & Klein 2018): a flake shines over 6 to 7 degrees of theta_h. Used where nothing
+/// better is known.
+inline constexpr double default_life_deg = 6.5;
+/// The cell for that life: what the three demo paints were fitted with, 4.6 to 5. A cell as wide as the life would keep
+/// flakes half as long again.
+inline constexpr float default_cell_deg = 4.75f;
+/// A cell this wide stands for all angles: the texel keeps its flake.
+inline constexpr float widest_cell_deg = 90.0f;
+
+/// Angular life of a paint's flakes, as the shader's random cells give it; fitted by the builder. Angles are those
+/// inside the coat.
+struct FlakeLife {
+  float cell_h_deg = default_cell_deg;  ///< width of a random cell along theta_h, [1, 90]; 90: one for all angles
+  float cell_i_deg = widest_cell_deg;   ///< along theta_i
+  LifeOrigin origin = LifeOrigin::assumed;
+  bool operator==(const FlakeLife&) const = default;
+};
+
 struct InterpolatablePaint {
   struct PaintPart {
     PaintIdentity identity;
@@ -44,6 +69,7 @@ struct InterpolatablePaint {
     std::span<const std::uint32_t> cluster_begin;  ///< rows + 1: first cluster of each row in `clusters`
     std::span<const QuantisedCuboid> clusters;     ///< all rows, all levels
     std::span<const std::uint8_t> tuple_cluster;   ///< per tuple: index within the row's clusters
+    FlakeLife life;
   };
 
   std::vector<PaintPart> paints;               ///< 1 to max_paints
@@ -58,6 +84,10 @@ struct InterpolatablePaint {
   std::uint64_t random_seed = 0;               ///< of the random textures: nothing derivable is stored
 
   [[nodiscard]] int row_count() const { return level_count * layout.slice_count(); }
+  /// Random cells per angle bin along theta_h and theta_i; 0: one cell for all angles. The mean over the paints whose
+  /// life is measured (else over all), the same at all weights: cells that grew with a weight would exchange the
+  /// flakes while a customer drags.
+  [[nodiscard]] std::array<double, 2> flake_cells_per_bin() const;
 };
 
 /// One number per paint for each group; every group sums to 1. Beyond [0, 1] is extrapolation.

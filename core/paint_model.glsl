@@ -3,7 +3,7 @@
 // Rules of the house: literals through R(); `real` for scalars; components only as .x .y .z .w (no swizzles); loops
 // with constant bounds; no names that begin with gl_. What the surroundings provide, in both languages:
 //   uniforms     u_diffuse, u_lobe[3], u_inv_m, u_coat_ior, u_refraction_ior, u_table_size,
-//                u_flake_scale, u_slice_count, u_level_count, u_bins_per_rad, u_lab_lo, u_lab_span
+//                u_slice_count, u_level_count, u_bins_per_rad, u_flake_cells, u_lab_lo, u_lab_span
 //   constants    LINEAR_FROM_XYZ_R/G/B (vec3, white folded in), LAB_DELTA, LOBES
 //   fetches      fetch_chi, fetch_mean, fetch_slice, fetch_rank, fetch_corner, fetch_random
 //
@@ -142,18 +142,73 @@ vec3 linear_from_lab_factor(vec3 lab) {
              vec3(R(0.0)));
 }
 
-// A 16-bit number from two bytes of an RGBA8 texel (low, high), as [0, 1].
+// A 16-bit number from two bytes of an RGBA8 texel (low, high), as [0, 1]. No intermediate value leaves 16 bits' range.
 real from_bytes(real low, real high) {
-  return (low * R(255.0) + high * R(65280.0)) / R(65535.0);
+  return high * R(0.9961089494163424) + low * R(0.0038910505836576);  // 65280/65535, 255/65535
 }
 
-// The random numbers of one texel: x = warped rank, y z w = place inside the cuboid along L, a, b.
-// `cell` counts texels of that level; each level looks at another part of the texture. The third number comes from
-// the other two bytes: fract(97 y + 57 z) is uniform, and independent of each of them alone.
-vec4 flake_random(vec2 cell, real level) {
-  vec4 t = fetch_random(cell.x + R(37.0) * level, cell.y + R(91.0) * level);
-  real y = fract(R(97.0) * t.z + R(57.0) * t.w);
-  return vec4(min(from_bytes(t.x, t.y), R(0.999984)), y, t.z, t.w);
+// What a flake shows depends on where half vector and light stand towards it; a texel's random value must change with
+// these angles or nothing twinkles. The plane (theta_h, theta_i) is cut into random cells, u_flake_cells of them per
+// angle bin (0: one value for all angles), and each cell has its own Gaussian value g at each texel. Between cells they
+// are blended with weights of square sum 1, which leaves the sum Gaussian, so that no angle changes the distribution;
+// with cos and sin of an even angle every angle also changes at the same rate: inside a cell two directions an angle d
+// apart correlate by cos(pi d / (2 cell)). FLAKE_CELLS 4: blended between the cells around; 1: the nearest cell's value,
+// which jumps.
+#ifndef FLAKE_CELLS
+#define FLAKE_CELLS 4
+#endif
+
+// The values of cell (h, i) in x y and of its neighbour (h + 1, i) in z w: the texture holds both (paint_textures.hpp).
+// Cells and levels look at other places of it; no two of 91 x 16 cells and 13 levels at the same.
+vec4 random_pair(vec2 cell, real level, real h, real i) {
+  return fetch_random(cell.x + R(203.0) * level + R(129.0) * h + R(231.0) * i,
+                      cell.y + R(311.0) * level + R(187.0) * h + R(227.0) * i);
+}
+
+// The Gaussian value of a texel at these angles, in bins. The bytes stand for -4.75 to 4.75: 1 in 490,000 lies outside.
+real flake_gaussian(vec2 cell, real level, real fh, real fi) {
+  real ch = fh * u_flake_cells.x;
+  real ci = fi * u_flake_cells.y;
+#if FLAKE_CELLS == 1
+  vec4 t = random_pair(cell, level, floor(ch + R(0.5)), floor(ci + R(0.5)));
+  return R(9.5) * (from_bytes(t.x, t.y) - R(0.5));
+#else
+  real h = floor(ch);
+  real i = floor(ci);
+  real to_h = R(1.5707963267948966) * (ch - h);
+  real this_h = cos(to_h);
+  real next_h = sin(to_h);
+  real middle = R(0.5) * (this_h + next_h);
+  vec4 t = random_pair(cell, level, h, i);
+  real g = this_h * from_bytes(t.x, t.y) + next_h * from_bytes(t.z, t.w) - middle;
+  if (u_flake_cells.y > R(0.0)) {
+    real to_i = R(1.5707963267948966) * (ci - i);
+    t = random_pair(cell, level, h, i + R(1.0));
+    g = cos(to_i) * g + sin(to_i) * (this_h * from_bytes(t.x, t.y) + next_h * from_bytes(t.z, t.w) - middle);
+  }
+  return R(9.5) * g;
+#endif
+}
+
+// sqrt(1 - u) of the rank u = Phi(g): what is left above it, in the warp of the rank table (rank_table.hpp). Never
+// through u, which has no digits left where flakes are rare. For g >= 0 it is exp(-g^2/4) sqrt(erfcx(g/sqrt 2)/2), and
+// the root's reciprocal is smooth: minimax polynomial with p(0) = sqrt 2, so that both halves meet. Relative error of
+// 1 - u, at double: below 5.5e-4 for g up to 5 (1 - u = 2.9e-7), and 4.5e-3 up to 5.6.
+real flake_depth(real g) {
+  real x = abs(g);
+  real p = R(1.4142135623730951) + x * (R(0.5679818) + x * (R(-0.0265621) + x * (R(-0.001095607) + x * R(0.0002455818))));
+  real y = exp2(R(-0.36067376022224085) * x * x) / p;
+  return g < R(0.0) ? sqrt((R(1.0) - y) * (R(1.0) + y)) : y;
+}
+
+// The random numbers of one texel: x = sqrt(1 - rank), y z w = place inside the cuboid along L, a, b. `cell` counts
+// texels of that level. The place stays with the texel at all angles (docs/decisions.md says by how little that shows):
+// low bytes of two Gaussian values, which are uniform. The third comes from both: fract(97 y + 57 z) is uniform, and
+// independent of each of them alone.
+vec4 flake_random(vec2 cell, real level, real fh, real fi) {
+  vec4 t = fetch_random(cell.x + R(203.0) * level + R(229.0), cell.y + R(311.0) * level + R(257.0));
+  real l = fract(R(97.0) * t.x + R(57.0) * t.z);
+  return vec4(flake_depth(flake_gaussian(cell, level, fh, fi)), l, t.x, t.z);
 }
 
 // One slice at one level: rank -> tuple -> cuboid -> Lab -> linear sRGB.
@@ -163,10 +218,11 @@ vec3 flake_tap(real bin_h, real bin_i, real level, vec4 random) {
     return vec3(R(0.0));  // outside the table there are no flakes
   }
   real row = level * u_slice_count + floor(where.x * R(255.0) + R(0.5));
+  // The rank table counts from the dark end; counted from the bright one, 16 bits resolve the rare flakes.
   real scaled = random.x * R(256.0);
-  real step_index = floor(scaled);
-  real f = scaled - step_index;
-  vec4 entry = fetch_rank(step_index, row);
+  real below = min(floor(scaled), R(255.0));
+  real f = min(R(1.0) - (scaled - below), R(0.999));  // 1 would pass thresholds that mean "not within this step"
+  vec4 entry = fetch_rank(R(255.0) - below, row);
   real tuple = floor(entry.x * R(255.0) + R(0.5));
   tuple += f >= entry.y ? R(1.0) : R(0.0);
   tuple += f >= entry.z ? R(1.0) : R(0.0);
@@ -180,13 +236,19 @@ vec3 flake_tap(real bin_h, real bin_i, real level, vec4 random) {
   return linear_from_lab_factor(u_lab_lo + u_lab_span * q);
 }
 
-// All angle taps of one level. FLAKE_TAPS 1: the nearest slice; 4: bilinear between the four around.
-vec3 flake_level(real fh, real fi, vec2 surface_texel, real level) {
-  vec2 cell = floor(surface_texel * exp2(-level));
-  vec4 random = flake_random(cell, level);
-#if FLAKE_TAPS == 1
+// One level by the nearest slice's distribution. fh, fi: angles in bins.
+vec3 flake_nearest(real fh, real fi, vec2 surface_texel, real level) {
+  vec4 random = flake_random(floor(surface_texel * exp2(-level)), level, fh, fi);
   return flake_tap(floor(fh + R(0.5)), floor(fi + R(0.5)), level, random);
+}
+
+// All angle taps of one level. FLAKE_TAPS 1: the nearest slice; 4: bilinear between the four around, at one rank, which
+// blends their quantiles.
+vec3 flake_level(real fh, real fi, vec2 surface_texel, real level) {
+#if FLAKE_TAPS == 1
+  return flake_nearest(fh, fi, surface_texel, level);
 #else
+  vec4 random = flake_random(floor(surface_texel * exp2(-level)), level, fh, fi);
   real h0 = floor(fh);
   real i0 = floor(fi);
   real wh = fh - h0;

@@ -1,5 +1,5 @@
-// The paint model, the studio and the display transform in C++: the very texts of paint_model.glsl, studio.glsl and
-// display.glsl, compiled at any scalar type.
+// The paint model, the environment and the display transform in C++: the very texts of paint_model.glsl,
+// environment.glsl and display.glsl, compiled at any scalar type.
 //
 // Why it exists: CPU reference, shader and precision tests must be the same text, or they test nothing. The struct
 // below holds the shader's uniforms as members and its texture fetches over the same bytes the GPU gets; the GLSL is
@@ -17,6 +17,7 @@
 #include <span>
 
 #include "core/colour.hpp"
+#include "core/environment.hpp"
 #include "core/paint_textures.hpp"
 
 namespace lackwerk::core {
@@ -39,11 +40,12 @@ struct PaintModel {
   real u_slice_count = T(0);
   real u_level_count = T(0);
   real u_bins_per_rad = T(1);
+  vec2 u_flake_cells{T(0)};  ///< random cells per angle bin along theta_h and theta_i; 0: one for all angles
   vec3 u_lab_lo{T(0)}, u_lab_span{T(1)};
-  vec3 u_flake_fill{T(0)};  ///< see studio.glsl
-  real u_studio_gain = T(0);
-  vec2 u_floor_shadow{T(0)};
+  vec4 u_room{T(0)};                               ///< centre, radius; see environment.glsl
+  real u_environment_scale = T(0);                 ///< range times gain
   const PaintTextures* textures = &no_textures();  ///< never null
+  const Environment* environment = nullptr;        ///< needed by the functions of environment.glsl alone
 
   const vec3 LINEAR_FROM_XYZ_R = linear_from_xyz_row(0);
   const vec3 LINEAR_FROM_XYZ_G = linear_from_xyz_row(1);
@@ -54,6 +56,8 @@ struct PaintModel {
   static real sqrt(real x) { return std::sqrt(x); }
   static real exp2(real x) { return std::exp2(x); }
   static real pow(real x, real y) { return std::pow(x, y); }
+  static real cos(real x) { return std::cos(x); }
+  static real sin(real x) { return std::sin(x); }
   static real abs(real x) { return std::abs(x); }
   static real log2(real x) { return std::log2(x); }
   static real floor(real x) { return std::floor(x); }
@@ -92,6 +96,11 @@ struct PaintModel {
     return texel(textures->random_texel(static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)));
   }
 
+  vec4 fetch_environment(real x, real y) const {
+    const auto t = filtered_texel(*environment, static_cast<double>(x), static_cast<double>(y));
+    return vec4(T(t.x), T(t.y), T(t.z), T(t.w));
+  }
+
 // The shader's switches: in C++ everything is compiled in; zero weights and empty tables switch terms off.
 #define LOBES 3
 #define HAS_TABLE (1)
@@ -99,11 +108,12 @@ struct PaintModel {
 #define HAS_COAT (1)
 #define HAS_REFRACTION (1)
 #define FLAKE_TAPS 4
+#define FLAKE_CELLS 4
 #define R(x) static_cast<real>(x)
 // clang-format off: the order is the shader's
 #include "core/display.glsl"
+#include "core/environment.glsl"
 #include "core/paint_model.glsl"
-#include "core/studio.glsl"
 // clang-format on
 #undef LOBES
 #undef HAS_TABLE
@@ -111,8 +121,12 @@ struct PaintModel {
 #undef HAS_COAT
 #undef HAS_REFRACTION
 #undef FLAKE_TAPS
+#undef FLAKE_CELLS
 #undef R
 #undef MIN_COSINE
+#undef ENV_STACK_X
+#undef ENV_STACK_EDGE
+#undef ENV_STACK_STEP
 
  private:
   /// One row of XYZ-to-linear with the white point folded in, so that the shader multiplies once.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/check.hpp"
+#include "core/gaussian.hpp"
 
 namespace lackwerk::core {
 namespace {
@@ -29,6 +30,35 @@ void encode_rgbe(const glm::vec3& value, std::uint8_t* out) {
   const float scale = std::ldexp(1.0f, -exponent) * 255.0f;
   for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(std::clamp(std::lround(value[c] * scale), 0l, 255l));
   out[3] = static_cast<std::uint8_t>(std::clamp(exponent + 128, 1, 255));
+}
+
+/// The random texture: every quantile once, so that a whole texture has the exact distribution, in an order drawn from
+/// the seed (Fisher & Yates).
+std::vector<std::uint8_t> random_texture(std::uint64_t seed) {
+  constexpr std::size_t count = std::size_t{random_edge} * random_edge;
+  std::vector<std::uint16_t> value(count);
+  for (std::size_t k = 0; k < count / 2; ++k) {
+    const double g = normal_lower_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+    const auto q = static_cast<std::uint16_t>(std::lround((g / (2.0 * random_reach) + 0.5) * 65535.0));
+    value[k] = q;
+    value[count - 1 - k] = static_cast<std::uint16_t>(65535 - q);
+  }
+  for (std::size_t k = count - 1; k > 0; --k) {
+    // The high 32 bits of a product: uniform to 2^-14 of a part, no division.
+    const std::uint64_t j = ((splitmix64(seed + k) >> 32) * (k + 1)) >> 32;
+    std::swap(value[k], value[static_cast<std::size_t>(j)]);
+  }
+  std::vector<std::uint8_t> out(count * 4);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t x = (k + random_step_x) % random_edge;
+    const std::size_t y = (k / random_edge + random_step_y) % random_edge;
+    const std::uint16_t here = value[k], next = value[y * random_edge + x];
+    out[4 * k] = static_cast<std::uint8_t>(here & 255);
+    out[4 * k + 1] = static_cast<std::uint8_t>(here >> 8);
+    out[4 * k + 2] = static_cast<std::uint8_t>(next & 255);
+    out[4 * k + 3] = static_cast<std::uint8_t>(next >> 8);
+  }
+  return out;
 }
 
 std::size_t grid_offset(int bin_h, int bin_i) {
@@ -93,31 +123,6 @@ const std::uint8_t* PaintTextures::random_texel(std::int64_t x, std::int64_t y) 
   return &random[static_cast<std::size_t>((y & mask) * random_edge + (x & mask)) * 4];
 }
 
-glm::vec3 flake_fill(const SliceLayout& layout, const std::vector<glm::vec3>& flake_mean) {
-  if (layout.slice_count() == 0) return glm::vec3(0.0f);
-  const auto node = [&](int h, int i) {
-    const auto slice = layout.slice_at(h, i);
-    return slice ? glm::dvec3(flake_mean[static_cast<std::size_t>(*slice)]) : glm::dvec3(0.0);
-  };
-  const glm::dvec3 peak = node(0, 0);
-  constexpr int steps = 256;  // midpoint rule; the integrand is piecewise smooth, its error here is below 1e-4
-  const double dt = std::numbers::pi / 4.0 / steps;
-  glm::dvec3 sum(0.0);
-  for (int k = 0; k < steps; ++k) {
-    const double t = (k + 0.5) * dt;
-    const double f = t / layout.bin_width_rad();
-    const int b = static_cast<int>(f);
-    const double w = f - b;
-    const glm::dvec3 mu = node(b, b) * ((1 - w) * (1 - w)) + (node(b + 1, b) + node(b, b + 1)) * (w * (1 - w)) +
-                          node(b + 1, b + 1) * (w * w);
-    sum += mu * (std::sin(2 * t) * std::cos(2 * t) * dt);
-  }
-  glm::vec3 fill(0.0f);
-  for (int c = 0; c < 3; ++c)
-    if (peak[c] > 1e-9) fill[c] = static_cast<float>(4.0 * sum[c] / peak[c]);
-  return fill;
-}
-
 PaintTextures make_static_textures(const InterpolatablePaint& paint) {
   PaintTextures out;
   out.row_count = paint.row_count();
@@ -134,19 +139,7 @@ PaintTextures make_static_textures(const InterpolatablePaint& paint) {
   check_at_most(paint.layout.slice_count(), 256, "slices fit the slice map's byte");
   check_at_most(paint.layout.num_theta + 1, static_cast<int>(angle_grid), "angle nodes fit the slice map");
   out.rank = build_rank_table(paint);
-  out.random.resize(std::size_t{random_edge} * random_edge * 4);
-  for (std::size_t k = 0; k < std::size_t{random_edge} * random_edge; ++k) {
-    const std::uint64_t bits = splitmix64(paint.random_seed + k);
-    // u in [0, 1) from 48 bits, warped as rank_table.hpp says, then 16 bits.
-    const double u = static_cast<double>(bits >> 16) * 0x1p-48;
-    const double v = 1.0 - std::sqrt(1.0 - u);
-    const auto q = static_cast<std::uint32_t>(std::min(v * 65536.0, 65535.0));
-    std::uint8_t* t = &out.random[k * 4];
-    t[0] = static_cast<std::uint8_t>(q & 255);
-    t[1] = static_cast<std::uint8_t>(q >> 8);
-    t[2] = static_cast<std::uint8_t>(bits & 255);
-    t[3] = static_cast<std::uint8_t>((bits >> 8) & 255);
-  }
+  out.random = random_texture(paint.random_seed);
   return out;
 }
 
@@ -167,7 +160,6 @@ void update_textures(const InterpolatablePaint& paint, RealisedPaint& realised, 
   }
   if (textures.row_count == 0) return;
   textures.width = realised.width;
-  textures.flake_fill = flake_fill(paint.layout, realised.flake_mean);
   std::swap(textures.corner, realised.corners);
   for (int slice = 0; slice < paint.layout.slice_count(); ++slice) {
     const auto node = paint.layout.node_of(slice);

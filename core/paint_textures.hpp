@@ -9,7 +9,8 @@
 //   slice    grid x grid               R = slice number, G = 255 where there is no slice
 //   rank     256 x rows                RankStep (rank_table.hpp)
 //   corner   3 width x rows            QuantisedCuboid: three texels a tuple, low byte first
-//   random   512 x 512                 R, G = warped rank (low, high); B, A = place inside the cuboid along a and b
+//   random   512 x 512                 R, G = a Gaussian value g, low byte first: (g / 9.5 + 0.5) * 65535;
+//                                      B, A = that of the texel random_step further on
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,10 @@
 namespace lackwerk::core {
 
 inline constexpr int random_edge = 512;  ///< a power of two: core ES 2.0 repeats no others
-inline constexpr int angle_grid = 16;    ///< nodes 0..12 of num_theta = 12, and a border without flakes
+/// Where the next random cell along theta_h looks; paint_model.glsl's random_pair steps by the same.
+inline constexpr int random_step_x = 129, random_step_y = 187;
+inline constexpr double random_reach = 4.75;  ///< largest |g| the texture holds
+inline constexpr int angle_grid = 16;         ///< nodes 0..12 of num_theta = 12, and a border without flakes
 
 struct PaintTextures {
   int table_size = 0;      ///< 0: no table
@@ -36,7 +40,6 @@ struct PaintTextures {
   int width = 0;  ///< tuples per row
   std::vector<QuantisedCuboid> corner;
   std::vector<std::uint8_t> random;
-  glm::vec3 flake_fill{0.0f};  ///< the uniform u_flake_fill of studio.glsl
 
   [[nodiscard]] glm::dvec3 sample_chi(double u, double v) const;
   [[nodiscard]] glm::dvec3 mean_at(int bin_h, int bin_i) const;
@@ -49,16 +52,12 @@ struct PaintTextures {
 /// What a paint without table and flakes reads: chi = 1, mean 0, no slices.
 [[nodiscard]] const PaintTextures& no_textures();
 
-/// The parts that depend on the pack alone: slice map, rank table, random numbers (from the pack's seed).
+/// The parts that depend on the pack alone: slice map, rank table, random numbers (from the pack's seed: the quantiles
+/// of a Gaussian at (k + 1/2) / 512^2, each once, shuffled).
 [[nodiscard]] PaintTextures make_static_textures(const InterpolatablePaint& paint);
 
 /// The parts that depend on the weights: chi, mean, corners (swapped in, not copied).
 void update_textures(const InterpolatablePaint& paint, RealisedPaint& realised, PaintTextures& textures);
-
-/// Albedo of the mean flakes at normal view over their value at node (0, 0), per channel; 0 without flakes.
-/// At normal view theta_h = theta_i = t and light comes from 2t, so the albedo, the integral of mu/pi cos over the
-/// hemisphere, is 4 times the integral of mu(t, t) sin(2t) cos(2t) dt up to pi/4. Source: this project.
-[[nodiscard]] glm::vec3 flake_fill(const SliceLayout& layout, const std::vector<glm::vec3>& flake_mean);
 
 /// Sets a PaintModel's uniforms and textures. `textures` must outlive `model`.
 template <class Model>
@@ -79,10 +78,11 @@ void bind_model(const InterpolatablePaint& paint, const AnalyticPaint& analytic,
   model.u_slice_count = T(paint.layout.slice_count());
   model.u_level_count = T(paint.level_count);
   model.u_bins_per_rad = T(paint.layout.num_theta > 0 ? 1.0 / paint.layout.bin_width_rad() : 1.0);
+  const auto cells = paint.flake_cells_per_bin();
+  model.u_flake_cells = typename Model::vec2(T(cells[0]), T(cells[1]));
   const glm::vec3 span = paint.range.hi - paint.range.lo;
   model.u_lab_lo = V3(T(paint.range.lo.x), T(paint.range.lo.y), T(paint.range.lo.z));
   model.u_lab_span = V3(T(span.x), T(span.y), T(span.z));
-  model.u_flake_fill = V3(T(textures.flake_fill.x), T(textures.flake_fill.y), T(textures.flake_fill.z));
   model.textures = &textures;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/check.hpp"
 #include "core/colour.hpp"
+#include "core/level_balance.hpp"
 
 namespace lackwerk::core {
 
@@ -184,7 +185,24 @@ void weigh_clusters(std::span<const QuantisedCuboid> clusters, float lightness, 
 struct RowCorners {
   std::array<float, max_tuples_per_row * 3 + 1> lo;
   std::array<float, max_tuples_per_row * 3 + 1> hi;
+  std::array<float, max_tuples_per_row> lightness_lo, lightness_hi;  ///< L once more, side by side
 };
+
+/// Scales a row's boxes to the mean luminance of level 0 of their slice (level_balance.hpp).
+void balance_row(double level0, double strength, std::span<const std::uint32_t> mass, const LabRange& range,
+                 RowCorners& corners) {
+  const std::size_t tuples = mass.size();
+  const double own = mean_luminance(std::span(corners.lightness_lo).first(tuples),
+                                    std::span(corners.lightness_hi).first(tuples), mass, range);
+  const LabGain gain(row_gain(level0, own, strength), range);
+  for (std::size_t t = 0; t < tuples; ++t)
+    for (auto* corner : {&corners.lo, &corners.hi}) {
+      float* q = corner->data() + 3 * t;
+      q[0] = gain.lightness(q[0]);
+      q[1] = gain.colour(q[1], 0);
+      q[2] = gain.colour(q[2], 1);
+    }
+}
 
 /// Rounds to the 16-bit grid. Where extrapolation turned a box inside out, it has shrunk to its middle: that keeps
 /// min <= max, is continuous in the weights and leaves upright boxes untouched to the bit.
@@ -220,6 +238,10 @@ void realise_corners(const InterpolatablePaint& paint, const Weights& weights, R
 
   std::array<WeightedClusters, max_paints> weighted;
   RowCorners corners;
+  const double strength = balance_strength(weights.flake_lightness);
+  const auto slices = static_cast<std::size_t>(paint.layout.slice_count());
+  out.level0_luminance.resize(strength > 0.0 ? slices : 0);
+  std::size_t slice = 0;
   for (std::size_t row = 0; row < rows; ++row) {
     const std::size_t begin = paint.tuple_begin[row];
     const std::size_t tuples = paint.tuple_begin[row + 1] - begin;
@@ -240,10 +262,21 @@ void realise_corners(const InterpolatablePaint& paint, const Weights& weights, R
       }
       for (std::size_t i = 0; i < 4; ++i) corners.lo[3 * t + i] = sum[i];
       for (std::size_t i = 0; i < 4; ++i) corners.hi[3 * t + i] = sum[4 + i];
+      corners.lightness_lo[t] = sum[0];
+      corners.lightness_hi[t] = sum[4];
+    }
+    if (strength > 0.0) {
+      const auto mass = paint.mass.subspan(begin, tuples);
+      if (row < slices)
+        out.level0_luminance[row] = mean_luminance(std::span(corners.lightness_lo).first(tuples),
+                                                   std::span(corners.lightness_hi).first(tuples), mass, paint.range);
+      else
+        balance_row(out.level0_luminance[slice], strength, mass, paint.range, corners);
     }
     QuantisedCuboid* to = out.corners.data() + row * width;
     round_row(corners, tuples, to);
     std::fill(to + tuples, to + width, QuantisedCuboid{});
+    if (++slice == slices) slice = 0;
   }
 }
 
@@ -337,6 +370,21 @@ AnalyticPaint realise_analytic(const InterpolatablePaint& paint, const Weights& 
   AnalyticPaint out;
   blend_analytic(paint, weights, out);
   return out;
+}
+
+std::array<double, 2> InterpolatablePaint::flake_cells_per_bin() const {
+  const double bin_deg = layout.num_theta > 0 ? 90.0 / layout.num_theta : 0.0;
+  const auto cells = [&](float cell_deg) { return cell_deg < widest_cell_deg ? bin_deg / double{cell_deg} : 0.0; };
+  std::array<double, 2> sum{};
+  int counted = 0;
+  const auto measured = [](const PaintPart& part) { return part.life.origin != LifeOrigin::assumed; };
+  const bool any = std::any_of(paints.begin(), paints.end(), measured);
+  for (const PaintPart& part : paints) {
+    if (any && !measured(part)) continue;
+    sum = {sum[0] + cells(part.life.cell_h_deg), sum[1] + cells(part.life.cell_i_deg)};
+    ++counted;
+  }
+  return {sum[0] / std::max(counted, 1), sum[1] / std::max(counted, 1)};
 }
 
 void realise(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out) {

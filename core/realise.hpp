@@ -26,6 +26,7 @@ struct RealisedPaint {
   int width = 0;                         ///< most tuples in any row
   std::vector<QuantisedCuboid> corners;  ///< row_count() * width
   std::vector<glm::vec3> flake_mean;     ///< per slice: mean of pi * Xi over level 0, linear sRGB, >= 0
+  std::vector<double> level0_luminance;  ///< working memory of realise
 };
 
 /// Linear blend of a, s, m, F0, IORs and (in Lab) chi, lobes paired by roughness; clamped to m >= 1e-3, a and s >= 0,
@@ -33,7 +34,8 @@ struct RealisedPaint {
 [[nodiscard]] AnalyticPaint realise_analytic(const InterpolatablePaint& paint, const Weights& weights);
 
 /// Blends all corners and their means into `out`. Weights must have passed check_weights. At e_k the corners are
-/// bit for bit those of paint k. Extrapolated corners are clamped to the pack's range and keep min <= max.
+/// bit for bit those of paint k. Extrapolated corners are clamped to the pack's range and keep min <= max. In mixes the
+/// rows of the farther mip levels are scaled to the mean luminance of level 0 (level_balance.hpp).
 void realise(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out);
 
 }  // namespace lackwerk::core

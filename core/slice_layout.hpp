@@ -7,6 +7,8 @@
 // theta_h = bin_h * 90 deg / num_theta, so that (0, 0) is the exact mirror geometry and neighbours blend bilinearly.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -52,6 +54,31 @@ struct SliceLayout {
     layout.lut.push_back(static_cast<std::uint16_t>(layout.lut.back() + row));
   }
   return layout;
+}
+
+/// Whether light can meet the angles (theta_h, theta_i), radians, below a coat of this index: inside, every direction
+/// is within the critical angle of the normal. Both directions lie lowest in the plane across that of n and h, where
+/// each has the cosine cos(theta_h) cos(theta_i).
+[[nodiscard]] inline bool reachable_below_coat(double theta_h, double theta_i, double index) {
+  const double critical_cosine = std::sqrt(1.0 - 1.0 / (index * index));
+  return std::cos(theta_h) * std::cos(theta_i) >= critical_cosine;
+}
+
+/// The nodes of `layout` that pictures can read below a coat of this index (>= 1): those that can be reached, and their
+/// neighbours, which blend into the cells between. Rows keep their order and start at bin_h = 0.
+[[nodiscard]] inline SliceLayout reachable_layout(const SliceLayout& layout, double index) {
+  SliceLayout kept{layout.num_theta, {0}};
+  for (int bin_i = 0; bin_i < layout.rows(); ++bin_i) {
+    int count = 0;
+    // A node is read where the cell below it, whose lowest corner is (bin_h - 1, bin_i - 1), can be reached.
+    while (layout.slice_at(count, bin_i) &&
+           reachable_below_coat(std::max(count - 1, 0) * layout.bin_width_rad(),
+                                std::max(bin_i - 1, 0) * layout.bin_width_rad(), index))
+      ++count;
+    kept.lut.push_back(static_cast<std::uint16_t>(kept.lut.back() + count));
+  }
+  while (kept.rows() > 1 && kept.lut[kept.lut.size() - 2] == kept.lut.back()) kept.lut.pop_back();
+  return kept;
 }
 
 }  // namespace lackwerk::core

@@ -18,7 +18,9 @@
 namespace lackwerk::packs {
 
 /// Written into new packs; a reader refuses packs whose minimum_reader is above its own schema version.
-inline constexpr std::uint32_t paint_schema_version = 1;
+inline constexpr std::uint32_t paint_schema_version = 2;
+/// Version 2 adds the flakes' angular life, which older readers may do without.
+inline constexpr std::uint32_t paint_minimum_reader = 1;
 inline constexpr std::string_view pack_tool_version = "lackwerk " LACKWERK_VERSION;
 
 /// What the builder measured on one paint. 1-Wasserstein distances in Lab between a slice and its clusters.
@@ -34,7 +36,7 @@ struct PackInfo {
   std::uint64_t serial = 0;  ///< the store refuses a lower one than it has
   std::string tool_version{pack_tool_version};
   std::uint32_t schema_version = paint_schema_version;
-  std::uint32_t minimum_reader = paint_schema_version;
+  std::uint32_t minimum_reader = paint_minimum_reader;
   double transport_cost = 0.0;     ///< mean over rows and paints, Lab units per unit of mass; 0 with one paint
   std::vector<PaintError> errors;  ///< one per paint
   bool operator==(const PackInfo&) const = default;

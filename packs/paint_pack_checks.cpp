@@ -120,6 +120,13 @@ Result<void> check_analytic(const core::AnalyticPaint& analytic, const std::stri
   return {};
 }
 
+Result<void> check_life(const core::FlakeLife& life, const std::string& name, const Judge& judge) {
+  for (const float width : {life.cell_h_deg, life.cell_i_deg})
+    if (auto ok = judge.within(width, 1.0, core::widest_cell_deg, name); !ok) return ok;
+  if (life.origin > core::LifeOrigin::fine) return judge.refuse(name + ".origin", "is none of assumed, slices, fine");
+  return {};
+}
+
 /// `begin` must start at 0, grow by 1 to `most` per row, and end at `size`.
 Result<void> check_begin(std::span<const std::uint32_t> begin, std::size_t rows, std::uint32_t most, std::size_t size,
                          const std::string& name, const Judge& judge) {
@@ -223,6 +230,7 @@ Result<void> check_contents(const PackContents& contents, const std::string& fil
     if (auto ok = check_identity(paint.paints[k].identity, name, judge); !ok) return ok;
     if (auto ok = check_analytic(paint.paints[k].analytic, name, judge); !ok) return ok;
     if (auto ok = check_error(contents.info.errors[k], slices, name + ".error", judge); !ok) return ok;
+    if (auto ok = check_life(paint.paints[k].life, name + ".life", judge); !ok) return ok;
   }
   if (slices == 0) return check_flakeless(paint, judge);
   const auto rows = static_cast<std::size_t>(paint.row_count());

@@ -56,9 +56,10 @@ flatbuffers::Offset<fb::Paint> encode_paint(flatbuffers::FlatBufferBuilder& out,
   const auto errors = fb::CreatePaintError(out, error.flake_w1_mean, error.flake_w1_max, slice_errors);
   const fb::Rgb64 diffuse = to_fb(analytic.diffuse);
   const auto origin = [](core::Provenance p) { return static_cast<fb::Origin>(p); };
+  const fb::FlakeLife life(part.life.cell_h_deg, part.life.cell_i_deg, static_cast<fb::LifeOrigin>(part.life.origin));
   return fb::CreatePaint(out, name, source, origin(part.identity.lobes), origin(part.identity.flakes),
                          origin(part.identity.coat), &diffuse, lobes, analytic.coat_ior, analytic.refraction_ior, chi,
-                         cluster_begin, clusters, tuple_cluster, errors);
+                         cluster_begin, clusters, tuple_cluster, errors, &life);
 }
 
 Result<core::AnalyticPaint> decode_analytic(const fb::Paint& paint, const std::string& file, const std::string& at) {
@@ -102,6 +103,8 @@ Result<void> decode_paint(const fb::Paint& paint, const std::string& file, const
   part.cluster_begin = span_of(*paint.cluster_begin());
   part.clusters = {reinterpret_cast<const core::QuantisedCuboid*>(paint.clusters()->Data()), paint.clusters()->size()};
   part.tuple_cluster = span_of(*paint.tuple_cluster());
+  if (const fb::FlakeLife* life = paint.life())
+    part.life = {life->cell_h_deg(), life->cell_i_deg(), static_cast<core::LifeOrigin>(life->origin())};
   const auto& slice_errors = *paint.error()->flake_w1_slice();
   if (slice_errors.size() != slices)
     return fail(file, at + ".error.flake_w1_slice",

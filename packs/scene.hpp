@@ -7,10 +7,13 @@
 // under the middle of the car.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
+
+#include "core/environment.hpp"
 
 namespace lackwerk::packs {
 
@@ -29,6 +32,22 @@ enum class SurfaceKind : std::uint8_t {
 };
 inline constexpr std::uint8_t surface_kind_count = 10;
 
+/// How much of the environment's light from direction d reaches a vertex, baked: V(d) = sum of nine coefficients times
+/// (1, x, y, z, xy, yz, zx, x^2 - y^2, 3 z^2 - 1), clamped to [0, 1]. A coefficient is (byte - 128) / 64: 1 and 0 are
+/// exact, so that an open vertex is exactly open. Fitted over the hemisphere of the vertex normal (what lies behind it
+/// never counts). The floor does not block: light from below is the environment's own floor, darkened where the car
+/// stands on it.
+using Visibility = std::array<std::uint8_t, 9>;
+inline constexpr Visibility open_visibility = {192, 128, 128, 128, 128, 128, 128, 128, 128};
+
+/// Baked irradiance over pi (what a white diffuser shows there, visibility included), per channel: sqrt(value / range)
+/// times 65535, with the scene's irradiance_range.
+using Irradiance = std::array<std::uint16_t, 3>;
+
+/// Detail levels a part is drawn at, as bits.
+inline constexpr std::uint8_t detail_full = 1;    ///< still pictures, close views, strong GPUs
+inline constexpr std::uint8_t detail_coarse = 2;  ///< moving pictures on weak machines, and the floor's mirror image
+
 /// One indexed triangle mesh of one material. Arrays have equal length, except `indices` (a multiple of three).
 struct MeshPart {
   std::string name;                             ///< "body", "window_front", ...: for messages only
@@ -37,6 +56,9 @@ struct MeshPart {
   std::vector<glm::vec3> normals;               ///< unit length, pointing outward
   std::vector<std::uint8_t> ambient_occlusion;  ///< 255 = open, 0 = closed; empty = all open
   std::vector<std::uint32_t> indices;           ///< counter-clockwise seen from outside
+  std::vector<Visibility> visibility;           ///< empty = all open
+  std::vector<Irradiance> irradiance;           ///< empty = not baked: the renderer asks the environment's last level
+  std::uint8_t detail = detail_full | detail_coarse;
 };
 
 /// A named point of view. Vertical field of view; the horizontal one follows from the picture's shape.
@@ -51,6 +73,8 @@ struct Scene {
   std::string name;
   std::vector<MeshPart> parts;
   std::vector<Camera> cameras;  ///< the first one is the default
+  core::Environment environment = core::uniform_environment(glm::vec3(1.0f));
+  float irradiance_range = 1.0f;  ///< of all parts' irradiance, > 0
 };
 
 }  // namespace lackwerk::packs

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "packs/paint_pack.hpp"
+#include "packs/scene_pack_checks.hpp"
 #include "packs/scene_pack_generated.h"
 
 namespace lackwerk::packs {
@@ -16,89 +17,19 @@ static_assert(sizeof(fb::Point) == sizeof(glm::vec3) &&
               std::alignment_of_v<fb::Point> == std::alignment_of_v<glm::vec3>);
 static_assert(sizeof(fb::UnitVector) == 6);
 
-constexpr flatbuffers::uoffset_t max_depth = 4, max_tables = max_scene_parts + max_scene_cameras + 1;
-constexpr float max_coordinate_mm = 1e6f, max_normal_error = 1e-2f;
+static_assert(sizeof(fb::Light) == sizeof(core::EnvironmentLight));
+
+constexpr flatbuffers::uoffset_t max_depth = 4, max_tables = max_scene_parts + max_scene_cameras + 2;
 constexpr float snorm_scale = 32767.0f;
 
-std::string at(const char* name, std::size_t index) { return std::string(name) + "[" + std::to_string(index) + "]"; }
-
-bool in_bounds(const glm::vec3& p) {
-  return std::abs(p.x) <= max_coordinate_mm && std::abs(p.y) <= max_coordinate_mm &&
-         std::abs(p.z) <= max_coordinate_mm;  // false for NaN
-}
-
 glm::vec3 point_of(const fb::Point& p) { return {p.x(), p.y(), p.z()}; }
+fb::Point fb_point(const glm::vec3& p) { return {p.x, p.y, p.z}; }
 
 fb::UnitVector quantise(const glm::vec3& normal) {
   // Normalised first: what a reader restores is then within half a step of the direction.
   const glm::vec3 n = glm::normalize(normal) * snorm_scale;
   const auto round = [](float v) { return static_cast<std::int16_t>(std::lround(std::clamp(v, -32767.0f, 32767.0f))); };
   return {round(n.x), round(n.y), round(n.z)};
-}
-
-Result<void> check_camera(const Camera& camera, const std::string& name, const std::string& file) {
-  const char* remedy = "build the scene again";
-  if (camera.name.empty() || camera.name.size() > 200)
-    return fail(file, name + ".name", "must have 1 to 200 bytes", remedy);
-  if (!in_bounds(camera.eye_mm) || !in_bounds(camera.target_mm))
-    return fail(file, name, "coordinates must be within 1e6 mm", remedy);
-  if (glm::distance(camera.eye_mm, camera.target_mm) < 1e-3f)
-    return fail(file, name, "looks at the point it stands on", remedy);
-  if (!(camera.vertical_fov_deg > 0.0f && camera.vertical_fov_deg < 120.0f))
-    return fail(file, name + ".vertical_fov_deg", "must be above 0 and below 120", remedy);
-  return {};
-}
-
-Result<void> check_part(const MeshPart& part, const std::string& name, const std::string& file) {
-  const char* remedy = "build the scene again";
-  const std::size_t vertices = part.positions_mm.size();
-  if (part.name.size() > 200) return fail(file, name + ".name", "must have at most 200 bytes", remedy);
-  if (static_cast<std::uint8_t>(part.kind) >= surface_kind_count)
-    return fail(file, name + ".kind", "is not known", remedy);
-  if (vertices == 0 || part.indices.empty()) return fail(file, name, "has no triangles", remedy);
-  if (part.normals.size() != vertices) return fail(file, name + ".normals", "must be one per vertex", remedy);
-  if (!part.ambient_occlusion.empty() && part.ambient_occlusion.size() != vertices)
-    return fail(file, name + ".ambient_occlusion", "must be one per vertex or none", remedy);
-  if (part.indices.size() % 3 != 0) return fail(file, name + ".indices", "must come in threes", remedy);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (!in_bounds(part.positions_mm[v]))
-      return fail(file, name + "." + at("positions", v), "must be within 1e6 mm", remedy);
-    if (!(std::abs(glm::length(part.normals[v]) - 1.0f) <= max_normal_error))
-      return fail(file, name + "." + at("normals", v), "must have unit length", remedy);
-  }
-  for (std::size_t k = 0; k < part.indices.size(); ++k)
-    if (part.indices[k] >= vertices)
-      return fail(file, name + "." + at("indices", k),
-                  std::to_string(part.indices[k]) + " of " + std::to_string(vertices) + " vertices", remedy);
-  return {};
-}
-
-Result<void> check_totals(std::size_t parts, std::size_t cameras, std::size_t vertices, std::size_t indices,
-                          const std::string& file) {
-  const auto limit = [&](const char* field, std::size_t count, std::size_t most) -> Result<void> {
-    if (count <= most) return {};
-    return fail(file, field, std::to_string(count) + " of at most " + std::to_string(most), "build a smaller scene");
-  };
-  if (parts == 0) return fail(file, "parts", "a scene needs at least one", "build the scene again");
-  if (auto ok = limit("parts", parts, max_scene_parts); !ok) return ok;
-  if (auto ok = limit("views", cameras, max_scene_cameras); !ok) return ok;
-  if (auto ok = limit("positions", vertices, max_scene_vertices); !ok) return ok;
-  return limit("indices", indices, max_scene_indices);
-}
-
-Result<void> check_scene(const Scene& scene, const std::string& file) {
-  std::size_t vertices = 0, indices = 0;
-  for (const MeshPart& part : scene.parts) {
-    vertices += part.positions_mm.size();
-    indices += part.indices.size();
-  }
-  if (auto ok = check_totals(scene.parts.size(), scene.cameras.size(), vertices, indices, file); !ok) return ok;
-  if (scene.name.size() > 200) return fail(file, "name", "must have at most 200 bytes", "shorten it");
-  for (std::size_t k = 0; k < scene.parts.size(); ++k)
-    if (auto ok = check_part(scene.parts[k], at("parts", k), file); !ok) return ok;
-  for (std::size_t k = 0; k < scene.cameras.size(); ++k)
-    if (auto ok = check_camera(scene.cameras[k], at("views", k), file); !ok) return ok;
-  return {};
 }
 
 /// Appends `part` in pieces of at most max_part_vertices, triangles in their order.
@@ -112,6 +43,7 @@ void split_part(const MeshPart& part, std::vector<MeshPart>& out) {
   const auto finish = [&] {
     piece.name = part.name;
     piece.kind = part.kind;
+    piece.detail = part.detail;
     out.push_back(std::move(piece));
     piece = {};
     local.clear();
@@ -125,11 +57,21 @@ void split_part(const MeshPart& part, std::vector<MeshPart>& out) {
         piece.positions_mm.push_back(part.positions_mm[vertex]);
         piece.normals.push_back(part.normals[vertex]);
         if (!part.ambient_occlusion.empty()) piece.ambient_occlusion.push_back(part.ambient_occlusion[vertex]);
+        if (!part.visibility.empty()) piece.visibility.push_back(part.visibility[vertex]);
+        if (!part.irradiance.empty()) piece.irradiance.push_back(part.irradiance[vertex]);
       }
       piece.indices.push_back(found->second);
     }
   }
   finish();
+}
+
+template <class Group>
+void copy_groups(const flatbuffers::Vector<typename Group::value_type>& flat, std::vector<Group>& out) {
+  constexpr std::size_t size = std::tuple_size_v<Group>;
+  out.resize(flat.size() / size);
+  for (std::size_t k = 0; k < out.size() * size; ++k)
+    out[k / size][k % size] = flat.Get(static_cast<flatbuffers::uoffset_t>(k));
 }
 
 MeshPart decode_part(const fb::Part& part) {
@@ -143,11 +85,86 @@ MeshPart decode_part(const fb::Part& part) {
     const glm::vec3 v = glm::vec3(n->x(), n->y(), n->z()) / snorm_scale;
     // Restored to unit length only where it nearly has it: check_part must still see what is wrong.
     const float length = glm::length(v);
-    out.normals.push_back(std::abs(length - 1.0f) <= max_normal_error ? v / length : v);
+    out.normals.push_back(std::abs(length - 1.0f) <= max_unit_error ? v / length : v);
   }
   out.ambient_occlusion.assign(part.ambient_occlusion()->begin(), part.ambient_occlusion()->end());
   out.indices.assign(part.indices()->begin(), part.indices()->end());
+  if (part.visibility() != nullptr) copy_groups<Visibility>(*part.visibility(), out.visibility);
+  if (part.irradiance() != nullptr) copy_groups<Irradiance>(*part.irradiance(), out.irradiance);
+  out.detail = part.detail();
   return out;
+}
+
+/// Checked before: the atlas has its one size and there are environment_light_count lights.
+core::Environment decode_environment(const fb::Environment& environment) {
+  core::Environment out;
+  out.name = environment.name()->str();
+  out.centre_mm = point_of(*environment.centre());
+  out.room_radius_mm = environment.room_radius();
+  out.range = environment.range();
+  out.atlas.assign(environment.atlas()->begin(), environment.atlas()->end());
+  for (const fb::Light* light : *environment.lights())
+    out.lights.push_back({point_of(light->direction()), point_of(light->radiance())});
+  return out;
+}
+
+flatbuffers::Offset<fb::Environment> encode_environment(flatbuffers::FlatBufferBuilder& out,
+                                                        const core::Environment& environment) {
+  const auto name = out.CreateString(environment.name);
+  const auto atlas = out.CreateVector(environment.atlas);
+  std::vector<fb::Light> lights;
+  for (const core::EnvironmentLight& light : environment.lights)
+    lights.emplace_back(fb_point(light.direction), fb_point(light.radiance));
+  const auto light_vector = out.CreateVectorOfStructs(lights);
+  const fb::Point centre = fb_point(environment.centre_mm);
+  return fb::CreateEnvironment(out, name, &centre, environment.room_radius_mm, environment.range, atlas, light_vector);
+}
+
+/// Arrays of arrays are stored flat.
+template <class T, class Group>
+flatbuffers::Offset<flatbuffers::Vector<T>> encode_groups(flatbuffers::FlatBufferBuilder& out,
+                                                          const std::vector<Group>& groups) {
+  std::vector<T> flat;
+  flat.reserve(groups.size() * std::tuple_size_v<Group>);
+  for (const Group& group : groups) flat.insert(flat.end(), group.begin(), group.end());
+  return out.CreateVector(flat);
+}
+
+template <class Group>
+Result<void> check_groups(const flatbuffers::Vector<typename Group::value_type>* flat, std::size_t vertices,
+                          const std::string& field, const std::string& file) {
+  if (flat == nullptr || flat->size() == 0 || flat->size() == vertices * std::tuple_size_v<Group>) return {};
+  return fail(file, field, "must be " + std::to_string(std::tuple_size_v<Group>) + " numbers per vertex or none",
+              "build the scene again");
+}
+
+/// What decides how much memory is taken, before any is: a small file can name the same vector a thousand times.
+Result<void> check_sizes(const fb::ScenePack& root, const std::string& file) {
+  const char* remedy = "build the scene again";
+  std::size_t vertices = 0, indices = 0;
+  for (flatbuffers::uoffset_t k = 0; k < root.parts()->size(); ++k) {
+    const fb::Part& part = *root.parts()->Get(k);
+    const std::string field = item_name("parts", k);
+    if (part.name()->size() > max_scene_name_bytes)
+      return fail(file, "parts", "a name is longer than 200 bytes", remedy);
+    const std::size_t own = part.positions()->size();
+    if (auto ok = check_groups<Visibility>(part.visibility(), own, field + ".visibility", file); !ok) return ok;
+    if (auto ok = check_groups<Irradiance>(part.irradiance(), own, field + ".irradiance", file); !ok) return ok;
+    vertices += std::max({part.positions()->size(), part.normals()->size(), part.ambient_occlusion()->size()});
+    indices += part.indices()->size();
+  }
+  for (const fb::View* view : *root.views())
+    if (view->name()->size() > max_scene_name_bytes)
+      return fail(file, "views", "a name is longer than 200 bytes", remedy);
+  if (root.name()->size() > max_scene_name_bytes) return fail(file, "name", "must have at most 200 bytes", remedy);
+  if (root.environment() == nullptr) return fail(file, "environment", "is missing", remedy);
+  if (root.environment()->name()->size() > max_scene_name_bytes)
+    return fail(file, "environment.name", "must have at most 200 bytes", remedy);
+  if (auto ok =
+          check_environment_counts(root.environment()->atlas()->size(), root.environment()->lights()->size(), file);
+      !ok)
+    return ok;
+  return check_scene_counts(root.parts()->size(), root.views()->size(), vertices, indices, file);
 }
 
 }  // namespace
@@ -165,21 +182,23 @@ std::vector<std::uint8_t> encode_scene_pack(const Scene& scene) {
     const auto normals = out.CreateVectorOfStructs(unit);
     const auto occlusion = out.CreateVector(part.ambient_occlusion);
     const auto indices = out.CreateVector(std::vector<std::uint16_t>(part.indices.begin(), part.indices.end()));
-    parts.push_back(
-        fb::CreatePart(out, name, static_cast<std::uint8_t>(part.kind), positions, normals, occlusion, indices));
+    const auto visibility = encode_groups<std::uint8_t>(out, part.visibility);
+    const auto irradiance = encode_groups<std::uint16_t>(out, part.irradiance);
+    parts.push_back(fb::CreatePart(out, name, static_cast<std::uint8_t>(part.kind), positions, normals, occlusion,
+                                   indices, visibility, irradiance, part.detail));
   }
   std::vector<flatbuffers::Offset<fb::View>> views;
   for (const Camera& camera : scene.cameras) {
-    const fb::Point eye(camera.eye_mm.x, camera.eye_mm.y, camera.eye_mm.z);
-    const fb::Point target(camera.target_mm.x, camera.target_mm.y, camera.target_mm.z);
+    const fb::Point eye = fb_point(camera.eye_mm), target = fb_point(camera.target_mm);
     views.push_back(fb::CreateView(out, out.CreateString(camera.name), &eye, &target, camera.vertical_fov_deg));
   }
   const auto tool = out.CreateString(pack_tool_version.data(), pack_tool_version.size());
   const auto name = out.CreateString(scene.name);
   const auto part_vector = out.CreateVector(parts);
   const auto view_vector = out.CreateVector(views);
-  fb::FinishScenePackBuffer(
-      out, fb::CreateScenePack(out, scene_schema_version, scene_schema_version, tool, name, part_vector, view_vector));
+  const auto environment = encode_environment(out, scene.environment);
+  fb::FinishScenePackBuffer(out, fb::CreateScenePack(out, scene_schema_version, scene_schema_version, tool, name,
+                                                     part_vector, view_vector, environment, scene.irradiance_range));
   return {out.GetBufferPointer(), out.GetBufferPointer() + out.GetSize()};
 }
 
@@ -188,31 +207,25 @@ Result<Scene> decode_scene_pack(std::span<const std::uint8_t> payload, const std
   if (!fb::VerifyScenePackBuffer(verifier))
     return fail(file, "payload", "not a well-formed scene pack", "build the scene again");
   const fb::ScenePack& root = *fb::GetScenePack(payload.data());
-  if (root.minimum_reader() < 1 || root.minimum_reader() > scene_schema_version)
+  if (root.schema_version() < scene_schema_version)
+    return fail(file, "schema_version", std::to_string(root.schema_version()) + " holds no light",
+                "build the scene again");
+  if (root.minimum_reader() > scene_schema_version || root.minimum_reader() < 1)
     return fail(file, "minimum_reader", "needs schema version " + std::to_string(root.minimum_reader()),
                 "update this program");
-  // Counted before anything is copied: a small file can name the same vector a thousand times.
-  std::size_t vertices = 0, indices = 0;
-  for (const fb::Part* part : *root.parts()) {
-    if (part->name()->size() > 200) return fail(file, "parts", "a name is longer than 200 bytes", "build it again");
-    vertices += std::max({part->positions()->size(), part->normals()->size(), part->ambient_occlusion()->size()});
-    indices += part->indices()->size();
-  }
-  for (const fb::View* view : *root.views())
-    if (view->name()->size() > 200) return fail(file, "views", "a name is longer than 200 bytes", "build it again");
-  if (root.name()->size() > 200) return fail(file, "name", "must have at most 200 bytes", "build it again");
-  if (auto ok = check_totals(root.parts()->size(), root.views()->size(), vertices, indices, file); !ok)
-    return tl::unexpected(ok.error());
+  if (auto ok = check_sizes(root, file); !ok) return tl::unexpected(ok.error());
   Scene out;
   out.name = root.name()->str();
   for (const fb::Part* part : *root.parts()) {
     if (part->positions()->size() > max_part_vertices)
-      return fail(file, at("parts", out.parts.size()), "has more than 65535 vertices", "build the scene again");
+      return fail(file, item_name("parts", out.parts.size()), "has more than 65535 vertices", "build the scene again");
     out.parts.push_back(decode_part(*part));
   }
   for (const fb::View* view : *root.views())
     out.cameras.push_back(
         {view->name()->str(), point_of(*view->eye()), point_of(*view->target()), view->vertical_fov_deg()});
+  out.environment = decode_environment(*root.environment());
+  out.irradiance_range = root.irradiance_range();
   if (auto ok = check_scene(out, file); !ok) return tl::unexpected(ok.error());
   return out;
 }
@@ -225,7 +238,7 @@ Result<Scene> read_scene_pack(const std::filesystem::path& path, Backing backing
 
 Result<void> write_scene_pack(const std::filesystem::path& path, const Scene& scene) {
   if (auto checked = check_scene(scene, path.string()); !checked) return checked;
-  Scene split{scene.name, {}, scene.cameras};
+  Scene split{scene.name, {}, scene.cameras, scene.environment, scene.irradiance_range};
   for (const MeshPart& part : scene.parts) split_part(part, split.parts);
   if (split.parts.size() > max_scene_parts)
     return fail(path.string(), "parts", "too many after splitting", "build a smaller scene");

@@ -17,7 +17,26 @@ int integer_of(const GlApi& gl, GLenum name) {
   return value;
 }
 
+/// Whatever looks at the result finds no more than this; nothing else knows of the mode.
+void limit_to_core(ContextInfo& info, CoreEs2 core_es2) {
+  info.platform += ", limited to core ES 2.0";
+  info.extensions.clear();
+  info.desktop = false;
+  info.fragment_highp = info.fragment_highp && core_es2 == CoreEs2::highp;
+  info.max_texture_units = std::min(info.max_texture_units, 8);
+  info.max_vertex_attributes = std::min(info.max_vertex_attributes, 8);
+  info.max_varying_vectors = std::min(info.max_varying_vectors, 8);
+  info.max_vertex_uniforms = std::min(info.max_vertex_uniforms, 128);
+  info.max_fragment_uniforms = std::min(info.max_fragment_uniforms, 16);
+}
+
 }  // namespace
+
+std::optional<CoreEs2> parse_core_es2(std::string_view word) {
+  if (word == "highp") return CoreEs2::highp;
+  if (word == "mediump") return CoreEs2::mediump;
+  return std::nullopt;
+}
 
 const char* backend_name(Backend backend) { return backend == Backend::osmesa ? "osmesa" : "egl"; }
 
@@ -49,7 +68,7 @@ std::vector<std::string> ContextInfo::lines() const {
   };
 }
 
-ContextInfo describe_context(const GlApi& gl, std::string platform) {
+ContextInfo describe_context(const GlApi& gl, std::string platform, CoreEs2 core_es2) {
   ContextInfo info;
   info.platform = std::move(platform);
   info.vendor = text_of(gl, GL_VENDOR);
@@ -73,13 +92,17 @@ ContextInfo describe_context(const GlApi& gl, std::string platform) {
   info.max_fragment_uniforms = integer_of(gl, GL_MAX_FRAGMENT_UNIFORM_VECTORS);
   while (gl.GetError() != GL_NO_ERROR) {
   }  // an unknown limit stays 0 and must not look like an error of the next caller
+  if (core_es2 != CoreEs2::off) limit_to_core(info, core_es2);
   return info;
 }
 
 int usable_lights(const ContextInfo& info) { return std::clamp((info.max_fragment_uniforms - 14) / 2, 0, 4); }
+int usable_sparkle_lights(const ContextInfo& info, int directional_lights) {
+  return std::clamp((info.max_fragment_uniforms - 14) / 2 - directional_lights, 0, 4);
+}
 
 Result<std::unique_ptr<Context>> create_context(Backend backend, const ContextSettings& settings) {
-  return backend == Backend::osmesa ? create_osmesa() : create_egl_surfaceless(settings);
+  return backend == Backend::osmesa ? create_osmesa(settings) : create_egl_surfaceless(settings);
 }
 
 }  // namespace lackwerk::gles

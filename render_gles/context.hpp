@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,10 +25,22 @@ enum class Backend {
 /// "egl" or "osmesa", as on the command line.
 [[nodiscard]] const char* backend_name(Backend backend);
 
+/// Whether a context hides what OpenGL ES 2.0 does not promise, so that a driver that offers more draws as the weakest
+/// one would.
+enum class CoreEs2 {
+  off,      ///< everything the driver offers
+  highp,    ///< no extensions, the promised minima; 32-bit floats in fragment shaders, which are optional but usual
+  mediump,  ///< without those too. Really 16 bits on Mesa's llvmpipe where the CPU has F16C
+};
+
+/// "highp" or "mediump", as on the command line; null: another word.
+[[nodiscard]] std::optional<CoreEs2> parse_core_es2(std::string_view word);
+
 struct ContextSettings {
   /// EGL only. True: of all EGL platforms take the first that is not a software rasteriser, if any.
   /// False: take the first platform that works.
   bool prefer_hardware = true;
+  CoreEs2 core_es2 = CoreEs2::off;
 };
 
 /// What the driver says about itself. Read once.
@@ -38,7 +51,7 @@ struct ContextInfo {
   std::string shading_language;  ///< GL_SHADING_LANGUAGE_VERSION
   std::string platform;          ///< how it was reached: "EGL_MESA_platform_surfaceless", "libOSMesa.so.8", ...
   std::vector<std::string> extensions;
-  bool desktop = false;           ///< desktop OpenGL that compiles ES shaders (OSMesa)
+  bool desktop = false;           ///< desktop OpenGL that compiles ES shaders (OSMesa) and may be used as such
   bool fragment_highp = false;    ///< fragment shaders have 32-bit floats
   int max_texture_size = 0;       ///< texels per edge
   int max_renderbuffer_size = 0;  ///< pixels per edge
@@ -55,12 +68,15 @@ struct ContextInfo {
   [[nodiscard]] std::vector<std::string> lines() const;
 };
 
-/// Asks the current context. `platform` goes into the result as it is.
-[[nodiscard]] ContextInfo describe_context(const GlApi& gl, std::string platform);
+/// Asks the current context. `platform` goes into the result as it is. `core_es2` makes it report no extensions and the
+/// limits of ES 2.0.25, tables 6.18 to 6.20 (texture sizes stay: 64 texels an edge, the promise, hold no picture).
+[[nodiscard]] ContextInfo describe_context(const GlApi& gl, std::string platform, CoreEs2 core_es2 = CoreEs2::off);
 
 /// How many directional lights the shading texts may have on this driver, [0, 4]: everything else takes up to 14
 /// fragment uniform vectors, a light takes two, and core ES 2.0 guarantees 16.
 [[nodiscard]] int usable_lights(const ContextInfo& info);
+/// How many lights of the environment may show single flakes beside that many directional ones, [0, 4].
+[[nodiscard]] int usable_sparkle_lights(const ContextInfo& info, int directional_lights);
 
 class Context {
  public:
@@ -88,6 +104,6 @@ class Context {
 
 /// The two makers behind create_context.
 [[nodiscard]] Result<std::unique_ptr<Context>> create_egl_surfaceless(const ContextSettings& settings);
-[[nodiscard]] Result<std::unique_ptr<Context>> create_osmesa();
+[[nodiscard]] Result<std::unique_ptr<Context>> create_osmesa(const ContextSettings& settings);
 
 }  // namespace lackwerk::gles

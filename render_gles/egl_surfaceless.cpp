@@ -59,7 +59,7 @@ class EglContext final : public Context {
   [[nodiscard]] Backend backend() const override { return Backend::egl_surfaceless; }
 
   /// Initialises the display, makes the context current and loads its functions.
-  Result<void> open(const std::string& platform) {
+  Result<void> open(const std::string& platform, CoreEs2 core_es2) {
     EGLint major = 0, minor = 0;
     if (eglInitialize(display_, &major, &minor) == EGL_FALSE)
       return fail("EGL", platform, "eglInitialize: " + egl_error_text());
@@ -87,7 +87,7 @@ class EglContext final : public Context {
     auto api = GlApi::load(find, "EGL " + platform);
     if (!api) return tl::unexpected(api.error());
     gl_ = *api;
-    info_ = describe_context(gl_, platform + (surfaceless ? "" : " (pbuffer)"));
+    info_ = describe_context(gl_, platform + (surfaceless ? "" : " (pbuffer)"), core_es2);
     return {};
   }
 
@@ -128,7 +128,7 @@ Result<std::unique_ptr<Context>> create_egl_surfaceless(const ContextSettings& s
       continue;
     }
     auto context = std::make_unique<EglContext>(candidate.display);
-    if (auto opened = context->open(candidate.name); !opened) {
+    if (auto opened = context->open(candidate.name, settings.core_es2); !opened) {
       reasons += (reasons.empty() ? "" : "; ") + candidate.name + ": " + opened.error().what;
       continue;
     }

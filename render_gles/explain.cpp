@@ -1,9 +1,20 @@
 // Renderer::explain: what was left out of a picture, and why.
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 #include "render_gles/renderer.hpp"
 
 namespace lackwerk::gles {
+namespace {
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
+}  // namespace
 
 std::vector<std::string> Renderer::explain() const {
   std::vector<std::string> out = context_.info().lines();
@@ -20,21 +31,40 @@ std::vector<std::string> Renderer::explain() const {
     if (lighting.stripes) {
       out.emplace_back("left out: paint shading: stripe reflections are switched on");
     } else {
-      if (!lighting.studio) out.emplace_back("left out: studio: switched off");
+      if (lighting.quality.path == LightPath::none) out.emplace_back("left out: environment: switched off");
+      if (paint_ && paint_->has_flakes() && !context_.info().fragment_highp) {
+        out.emplace_back(
+            "left out: single flakes: the driver's fragment shaders have 16-bit floats; their mean is drawn");
+      } else if (left_out_flakes_ && paint_ && paint_->has_flakes()) {
+        out.push_back("left out: single flakes: from here a pixel covers so many that their sum varies by less than " +
+                      short_number(100.0 * moving_contrast) + " % (mip level " +
+                      short_number(paint_->calm_level(moving_contrast)) + " and above)");
+      }
       if (lighting.lights.empty()) out.emplace_back("left out: directional lights: none is set");
-      if (lighting.flakes == FlakeMode::off) out.emplace_back("left out: flakes and their mean: switched off");
-      if (lighting.flakes == FlakeMode::mean) out.emplace_back("left out: single flakes: only their mean is asked for");
-      if (lighting.flakes == FlakeMode::nearest)
+      if (lighting.quality.flakes == FlakeMode::off) out.emplace_back("left out: flakes and their mean: switched off");
+      if (lighting.quality.flakes == FlakeMode::mean)
+        out.emplace_back("left out: single flakes: only their mean is asked for");
+      if (lighting.quality.flakes == FlakeMode::nearest)
         out.emplace_back("left out: blending between angle slices: the nearest slice is asked for");
       const int wanted = static_cast<int>(lighting.lights.size());
       const int lights = std::min(wanted, usable_lights(context_.info()));
       if (lights < wanted)
         out.push_back("left out: " + std::to_string(wanted - lights) + " of " + std::to_string(wanted) +
                       " lights: the driver has too few fragment uniform vectors");
-      if (lighting.flake_lights < lights && lighting.flakes > FlakeMode::mean)
-        out.push_back("left out: single flakes of " + std::to_string(lights - lighting.flake_lights) + " of " +
+      const int glints = std::min(lighting.quality.sparkle_lights, static_cast<int>(sparkle_.size()));
+      const int shown = std::min(glints, usable_sparkle_lights(context_.info(), lights));
+      if (shown < glints && lighting.quality.path == LightPath::filtered && !left_out_flakes_)
+        out.push_back("left out: single flakes of " + std::to_string(glints - shown) + " of " + std::to_string(glints) +
+                      " lights of the environment: the driver has too few fragment uniform vectors");
+      if (lighting.quality.flake_lights < lights && lighting.quality.flakes > FlakeMode::mean)
+        out.push_back("left out: single flakes of " + std::to_string(lights - lighting.quality.flake_lights) + " of " +
                       std::to_string(lights) + " lights: their mean is drawn");
     }
+    if (paint_ && paint_->has_flakes() && !lighting.stripes)
+      out.push_back("flakes: the nearest paint is at mip level " +
+                    short_number(finest_level(drawn_->view, drawn_->height)) + ", calm from level " +
+                    short_number(paint_->calm_level(moving_contrast)) + " moving and " +
+                    short_number(paint_->calm_level(still_contrast)) + " still");
     if (!lighting.dither) out.emplace_back("left out: dither: switched off");
   }
   for (std::string& line : programs_.lines()) out.push_back(std::move(line));

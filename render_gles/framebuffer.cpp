@@ -6,6 +6,9 @@
 namespace lackwerk::gles {
 namespace {
 
+constexpr GLenum half_float_oes = 0x8D61;
+constexpr GLenum half_float_desktop = 0x140B;
+constexpr GLint rgba16f_desktop = 0x881A;
 constexpr GLenum depth24 = 0x81A6;  // GL_DEPTH_COMPONENT24 and GL_DEPTH_COMPONENT24_OES are the same number
 
 bool complete(const GlApi& gl, GLuint depth, GLenum format, int width, int height) {
@@ -20,7 +23,7 @@ bool complete(const GlApi& gl, GLuint depth, GLenum format, int width, int heigh
 
 }  // namespace
 
-Result<Framebuffer> Framebuffer::create(const Context& context, int width, int height) {
+Result<Framebuffer> Framebuffer::create(const Context& context, int width, int height, PixelFormat format, bool depth) {
   const GlApi& gl = context.gl();
   const ContextInfo& info = context.info();
   const int largest = std::min(info.max_texture_size, info.max_renderbuffer_size);
@@ -29,7 +32,13 @@ Result<Framebuffer> Framebuffer::create(const Context& context, int width, int h
     return fail("", "size", size + " is not within 1x1 and " + std::to_string(largest) + "x" + std::to_string(largest),
                 "choose a size that " + info.renderer + " can draw", ErrorKind::usage);
 
+  const bool half = format == PixelFormat::rgba16f;
+  if (half && !info.desktop &&
+      !(info.has_extension("GL_OES_texture_half_float") && info.has_extension("GL_EXT_color_buffer_half_float")))
+    return fail("", "framebuffer", info.renderer + " has no half-float targets", "use 8 bits");
+
   Framebuffer out;
+  out.format_ = format;
   out.gl_ = &gl;
   out.width_ = width;
   out.height_ = height;
@@ -39,20 +48,41 @@ Result<Framebuffer> Framebuffer::create(const Context& context, int width, int h
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  out.depth_ = make_renderbuffer(gl);
+  if (half) {
+    // ES names the type HALF_FLOAT_OES and takes the size from it; desktop GL has a sized internal format.
+    gl.TexImage2D(GL_TEXTURE_2D, 0, info.desktop ? rgba16f_desktop : GLint{GL_RGBA}, width, height, 0, GL_RGBA,
+                  info.desktop ? half_float_desktop : half_float_oes, nullptr);
+  } else {
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  }
   out.framebuffer_ = make_framebuffer(gl);
   gl.BindFramebuffer(GL_FRAMEBUFFER, out.framebuffer_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, out.colour_.id(), 0);
 
+  if (!depth) {
+    const GLenum status = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+    while (gl.GetError() != GL_NO_ERROR) {
+    }  // a refused format is an answer, not a broken invariant
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+      return fail("", "framebuffer", info.renderer + " refuses this format at " + size, "choose another backend");
+    return out;
+  }
+  out.depth_ = make_renderbuffer(gl);
+  out.depth_bits_ = 16;
   const bool offers24 = info.desktop || info.has_extension("GL_OES_depth24");
   if (offers24 && complete(gl, out.depth_.id(), depth24, width, height)) {
     out.depth_bits_ = 24;
   } else if (!complete(gl, out.depth_.id(), GL_DEPTH_COMPONENT16, width, height)) {
-    return fail("", "framebuffer", info.renderer + " refuses RGBA8 with a depth buffer at " + size,
+    return fail("", "framebuffer", info.renderer + " refuses this format with a depth buffer at " + size,
                 "choose a smaller size or another backend");
   }
   return out;
+}
+
+std::size_t Framebuffer::bytes() const {
+  const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  return pixels * ((format_ == PixelFormat::rgba16f ? 8u : 4u) +
+                   (depth_bits_ > 16 ? 4u : static_cast<unsigned>(depth_bits_) / 8u));
 }
 
 void Framebuffer::bind() const {

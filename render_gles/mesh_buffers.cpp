@@ -24,8 +24,8 @@ std::vector<MeshChunk> split_part(const packs::MeshPart& part, std::size_t max_v
   const std::size_t count = part.positions_mm.size();
   check_equal(part.normals.size(), count, "normals of " + part.name);
   check_equal(part.indices.size() % 3, std::size_t{0}, "indices of " + part.name);
-  if (!part.ambient_occlusion.empty())
-    check_equal(part.ambient_occlusion.size(), count, "ambient occlusion of " + part.name);
+  if (!part.visibility.empty()) check_equal(part.visibility.size(), count, "visibility of " + part.name);
+  if (!part.irradiance.empty()) check_equal(part.irradiance.size(), count, "irradiance of " + part.name);
 
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> place(count, none);  // of each vertex within the current chunk
@@ -44,8 +44,10 @@ std::vector<MeshChunk> split_part(const packs::MeshPart& part, std::size_t max_v
       if (place[index] == none) {
         place[index] = static_cast<std::uint32_t>(placed.size());
         placed.push_back(index);
-        const std::uint8_t open = part.ambient_occlusion.empty() ? std::uint8_t{255} : part.ambient_occlusion[index];
-        chunk.vertices.push_back({part.positions_mm[index], part.normals[index], {open, 0, 0, 0}});
+        MeshVertex vertex{part.positions_mm[index], part.normals[index]};
+        if (!part.visibility.empty()) vertex.visibility = part.visibility[index];
+        if (!part.irradiance.empty()) vertex.irradiance = part.irradiance[index];
+        chunk.vertices.push_back(vertex);
       }
       chunk.indices.push_back(static_cast<std::uint16_t>(place[index]));
     }
@@ -58,6 +60,9 @@ MeshBuffers::MeshBuffers(const GlApi& gl, const packs::Scene& scene) {
     for (const MeshChunk& chunk : split_part(part)) {
       Draw draw;
       draw.surface = part.kind;
+      draw.detail = part.detail;
+      draw.visibility = !part.visibility.empty();
+      draw.irradiance = !part.irradiance.empty();
       for (const MeshVertex& vertex : chunk.vertices) draw.box.include(vertex.position_mm);
       draw.index_count = static_cast<GLsizei>(chunk.indices.size());
       const auto upload = [&](GLenum target, const auto& data) {
@@ -82,17 +87,27 @@ void MeshBuffers::draw(const GlApi& gl, const Draw& what) const {
   constexpr GLsizei stride = sizeof(MeshVertex);
   gl.BindBuffer(GL_ARRAY_BUFFER, what.vertices.id());
   gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, what.indices.id());
-  gl.EnableVertexAttribArray(attribute_position);
-  gl.EnableVertexAttribArray(attribute_normal);
-  gl.EnableVertexAttribArray(attribute_open);
-  gl.VertexAttribPointer(attribute_position, 3, GL_FLOAT, GL_FALSE, stride, at(offsetof(MeshVertex, position_mm)));
-  gl.VertexAttribPointer(attribute_normal, 3, GL_FLOAT, GL_FALSE, stride, at(offsetof(MeshVertex, normal)));
-  gl.VertexAttribPointer(attribute_open, 1, GL_UNSIGNED_BYTE, GL_TRUE, stride, at(offsetof(MeshVertex, open)));
+  const auto attribute = [&](GLuint slot, GLenum type, GLboolean normalised, std::size_t offset) {
+    gl.EnableVertexAttribArray(slot);
+    gl.VertexAttribPointer(slot, 3, type, normalised, stride, at(offset));
+  };
+  attribute(attribute_position, GL_FLOAT, GL_FALSE, offsetof(MeshVertex, position_mm));
+  attribute(attribute_normal, GL_FLOAT, GL_FALSE, offsetof(MeshVertex, normal));
+  attribute(attribute_irradiance, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(MeshVertex, irradiance));
+  for (GLuint k = 0; k < 3; ++k)
+    attribute(attribute_visible + k, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(MeshVertex, visibility) + 3 * k);
   gl.DrawElements(GL_TRIANGLES, what.index_count, GL_UNSIGNED_SHORT, nullptr);
 }
 
 bool MeshBuffers::has(packs::SurfaceKind kind) const {
   return std::any_of(draws_.begin(), draws_.end(), [kind](const Draw& draw) { return draw.surface == kind; });
+}
+
+std::size_t MeshBuffers::triangles(std::uint8_t detail) const {
+  std::size_t count = 0;
+  for (const Draw& draw : draws_)
+    if ((draw.detail & detail) != 0) count += static_cast<std::size_t>(draw.index_count) / 3;
+  return count;
 }
 
 }  // namespace lackwerk::gles

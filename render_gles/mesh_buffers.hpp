@@ -29,9 +29,12 @@ struct Box {
 struct MeshVertex {
   glm::vec3 position_mm;
   glm::vec3 normal;
-  std::array<std::uint8_t, 4> open{255, 0, 0, 0};  ///< baked occlusion, 255 = open; three bytes of padding
+  packs::Irradiance irradiance{};
+  std::uint16_t unused = 0;  ///< keeps what follows on four bytes
+  packs::Visibility visibility = packs::open_visibility;
+  std::array<std::uint8_t, 3> unused_too{};
 };
-static_assert(sizeof(MeshVertex) == 28);
+static_assert(sizeof(MeshVertex) == 44);
 
 /// At most 65,536 vertices of one part.
 struct MeshChunk {
@@ -47,6 +50,9 @@ class MeshBuffers {
  public:
   struct Draw {
     packs::SurfaceKind surface = packs::SurfaceKind::paint;
+    std::uint8_t detail = packs::detail_full | packs::detail_coarse;
+    bool visibility = false;  ///< whether they were baked
+    bool irradiance = false;
     Box box;
     GlObject vertices, indices;
     GLsizei index_count = 0;
@@ -59,6 +65,7 @@ class MeshBuffers {
   [[nodiscard]] std::span<const Draw> draws() const { return draws_; }
   /// Draws one of them with the program in use. Leaves the attribute arrays enabled.
   void draw(const GlApi& gl, const Draw& what) const;
+  [[nodiscard]] std::size_t triangles(std::uint8_t detail) const;
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
   [[nodiscard]] bool has(packs::SurfaceKind kind) const;
 

@@ -41,7 +41,7 @@ class OsMesaContext final : public Context {
   }
   [[nodiscard]] Backend backend() const override { return Backend::osmesa; }
 
-  Result<void> open(const std::string& library) {
+  Result<void> open(const std::string& library, CoreEs2 core_es2) {
     const std::array<int, 6> attributes = {osmesa_format, GL_RGBA, osmesa_profile, osmesa_compat_profile, 0, 0};
     context_ = api_.create_attribs(attributes.data(), nullptr);
     if (context_ == nullptr) return fail("OSMesa", library, "OSMesaCreateContextAttribs failed");
@@ -54,6 +54,7 @@ class OsMesaContext final : public Context {
     if (!info_.has_extension("GL_ARB_ES2_compatibility"))
       return fail("OSMesa", library, "no ARB_ES2_compatibility: " + info_.version + " cannot compile ES shaders",
                   "install a newer libosmesa6, or use the egl backend");
+    if (core_es2 != CoreEs2::off) info_ = describe_context(gl_, library, core_es2);
     return {};
   }
 
@@ -66,7 +67,7 @@ class OsMesaContext final : public Context {
 
 }  // namespace
 
-Result<std::unique_ptr<Context>> create_osmesa() {
+Result<std::unique_ptr<Context>> create_osmesa(const ContextSettings& settings) {
   void* library = nullptr;
   std::string name, reasons;
   for (const char* candidate : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}) {
@@ -92,7 +93,7 @@ Result<std::unique_ptr<Context>> create_osmesa() {
       !find(api.get_proc, "OSMesaGetProcAddress"))
     return fail("OSMesa", name, "not an OSMesa of version 11.2 or later", "install libosmesa6");
   auto context = std::make_unique<OsMesaContext>(api);
-  if (auto opened = context->open(name); !opened) return tl::unexpected(opened.error());
+  if (auto opened = context->open(name, settings.core_es2); !opened) return tl::unexpected(opened.error());
   return context;
 }
 

@@ -1,4 +1,4 @@
-// What paint_model.glsl and studio.glsl expect from their surroundings, in GLSL: uniforms and texture fetches.
+// What paint_model.glsl expects from their surroundings, in GLSL: uniforms and texture fetches.
 // All textures are RGBA8; sizes and meaning stand in core/paint_textures.hpp. The C++ twin is core/paint_model.hpp.
 
 uniform vec3 u_diffuse;
@@ -6,8 +6,6 @@ uniform vec4 u_lobe[3];
 uniform vec3 u_inv_m;
 uniform float u_coat_ior;
 uniform float u_refraction_ior;
-uniform float u_studio_gain;
-uniform vec2 u_floor_shadow;
 
 #if HAS_TABLE
 uniform sampler2D u_chi;
@@ -34,9 +32,9 @@ uniform sampler2D u_mean;
 uniform float u_slice_count;
 uniform float u_level_count;
 uniform float u_bins_per_rad;
+uniform vec2 u_flake_cells;
 uniform vec3 u_lab_lo;
 uniform vec3 u_lab_span;
-uniform vec3 u_flake_fill;
 
 const float ANGLE_GRID = 16.0;
 const float RANK_STEPS = 256.0;
@@ -48,7 +46,7 @@ vec3 fetch_mean(float bin_h, float bin_i) {
   float exponent = floor(t.w * 255.0 + 0.5);
   return exponent > 0.5 ? t.xyz * exp2(exponent - 128.0) : vec3(0.0);
 }
-#if FLAKE_LIGHTS > 0
+#if SINGLE_FLAKES
 uniform sampler2D u_slice;
 uniform sampler2D u_rank;
 uniform sampler2D u_corner;

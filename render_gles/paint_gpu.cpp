@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "core/directional_albedo.hpp"
+#include "core/environment.hpp"
 
 namespace lackwerk::gles {
 namespace {
@@ -15,27 +17,41 @@ int real_lobes(const core::AnalyticPaint& paint) {
 
 glm::vec3 narrow(const glm::dvec3& v) { return glm::vec3(v); }
 
+/// Bit k: lobe k of some mix within the paints' span may be narrower than the stacked levels of the environment. m
+/// blends linearly, so the narrowest paint bounds all of them.
+int narrow_lobes(const core::InterpolatablePaint& paint) {
+  int bits = 0;
+  for (const auto& part : paint.paints)
+    for (std::size_t k = 0; k < core::max_lobes; ++k) {
+      // At grazing view a lobe is narrower across the plane of incidence; 0.7 covers its mean.
+      const double m = 0.7 * part.analytic.lobes[k].m * part.analytic.refraction_ior;
+      if (core::environment_level_of(m) < core::first_stacked_level) bits |= 1 << k;
+    }
+  return bits;
+}
+
 }  // namespace
 
-glm::vec3 flake_fill(const core::InterpolatablePaint& paint, const core::PaintTextures& textures) {
-  if (textures.row_count == 0) return glm::vec3(0.0f);
-  const glm::dvec3 peak = textures.mean_at(0, 0);
-  constexpr int steps = 256;
-  const double step = std::numbers::pi / 2.0 / steps;
-  glm::dvec3 sum(0.0);
-  for (int k = 0; k < steps; ++k) {
-    const double t = (k + 0.5) * step;
-    // The shader's flake_mean on the diagonal theta_h = theta_i = t/2, linear between nodes.
-    const double at = t * 0.5 / paint.layout.bin_width_rad();
-    const int low = static_cast<int>(at);
-    const double w = at - low;
-    const glm::dvec3 near_row = textures.mean_at(low, low) * (1.0 - w) + textures.mean_at(low + 1, low) * w;
-    const glm::dvec3 far_row = textures.mean_at(low, low + 1) * (1.0 - w) + textures.mean_at(low + 1, low + 1) * w;
-    sum += (near_row * (1.0 - w) + far_row * w) * (2.0 * std::sin(t) * std::cos(t) * step);
+void apply_analytic(const GlApi& gl, const Program& program, const core::AnalyticPaint& paint) {
+  const auto vector = [&](const char* name, const glm::vec3& v) {
+    gl.Uniform3f(program.location(name), v.x, v.y, v.z);
+  };
+  const auto number = [&](const char* name, double v) { gl.Uniform1f(program.location(name), static_cast<float>(v)); };
+  vector("u_diffuse", narrow(paint.diffuse));
+  std::array<float, 4 * core::max_lobes> lobes{};
+  glm::vec3 inv_m(1.0f);
+  for (std::size_t k = 0; k < core::max_lobes; ++k) {
+    const core::Lobe& lobe = paint.lobes[k];
+    for (int c = 0; c < 3; ++c) lobes[4 * k + static_cast<std::size_t>(c)] = static_cast<float>(lobe.s[c]);
+    lobes[4 * k + 3] = static_cast<float>(lobe.f0);
+    inv_m[static_cast<int>(k)] = static_cast<float>(1.0 / lobe.m);
   }
-  glm::vec3 fill(0.0f);
-  for (int c = 0; c < 3; ++c) fill[c] = peak[c] > 0.0 ? static_cast<float>(sum[c] / peak[c]) : 0.0f;
-  return fill;
+  // As many as the program has: a longer array than it declares is an error.
+  if (const int count = program.size("u_lobe"); count > 0)
+    gl.Uniform4fv(program.location("u_lobe"), count, lobes.data());
+  vector("u_inv_m", inv_m);
+  number("u_coat_ior", paint.coat_ior);
+  number("u_refraction_ior", paint.refraction_ior);
 }
 
 Result<PaintGpu> PaintGpu::create(const Context& context, const core::InterpolatablePaint& paint) {
@@ -44,8 +60,11 @@ Result<PaintGpu> PaintGpu::create(const Context& context, const core::Interpolat
     out.lobes_ = std::max(out.lobes_, real_lobes(part.analytic));
     out.table_ = out.table_ || part.analytic.table.has_value();
     out.coat_ = out.coat_ || part.analytic.coat_ior > 1.0;
+    out.diffuse_ = out.diffuse_ || part.analytic.diffuse != glm::dvec3(0.0);
     out.refraction_ = out.refraction_ || part.analytic.refraction_ior > 1.0;
   }
+  out.narrow_ = narrow_lobes(paint);
+  out.contrast_ = core::flake_contrast(paint);
   out.textures_ = core::make_static_textures(paint);
   if (out.textures_.row_count > 0) {
     const int largest = context.info().max_texture_size;
@@ -94,7 +113,7 @@ void PaintGpu::upload_flakes() {
   if (textures_.row_count == 0) return;
   upload(mean_, core::angle_grid, core::angle_grid, textures_.mean.data(), false, false);
   upload(corner_, 3 * textures_.width, textures_.row_count, textures_.corner.data(), false, false);
-  flake_fill_ = flake_fill(*paint_, textures_);
+  flake_m_ = core::flake_roughness(*paint_, textures_);
 }
 
 Result<bool> PaintGpu::update(const core::Weights& weights) {
@@ -123,28 +142,17 @@ void PaintGpu::add_features(Features& features) const {
   features.table = table_;
   features.coat = coat_;
   features.refraction = refraction_;
+  features.diffuse = diffuse_;
+  features.narrow = narrow_;
   features.flakes = features.flakes && textures_.row_count > 0;
 }
 
 void PaintGpu::apply(const GlApi& gl, const Program& program) const {
-  const core::AnalyticPaint& paint = realised_.analytic;
   const auto vector = [&](const char* name, const glm::vec3& v) {
     gl.Uniform3f(program.location(name), v.x, v.y, v.z);
   };
   const auto number = [&](const char* name, double v) { gl.Uniform1f(program.location(name), static_cast<float>(v)); };
-  vector("u_diffuse", narrow(paint.diffuse));
-  std::array<float, 4 * core::max_lobes> lobes{};
-  glm::vec3 inv_m(1.0f);
-  for (std::size_t k = 0; k < core::max_lobes; ++k) {
-    const core::Lobe& lobe = paint.lobes[k];
-    for (int c = 0; c < 3; ++c) lobes[4 * k + static_cast<std::size_t>(c)] = static_cast<float>(lobe.s[c]);
-    lobes[4 * k + 3] = static_cast<float>(lobe.f0);
-    inv_m[static_cast<int>(k)] = static_cast<float>(1.0 / lobe.m);
-  }
-  gl.Uniform4fv(program.location("u_lobe"), static_cast<GLsizei>(core::max_lobes), lobes.data());
-  vector("u_inv_m", inv_m);
-  number("u_coat_ior", paint.coat_ior);
-  number("u_refraction_ior", paint.refraction_ior);
+  apply_analytic(gl, program, realised_.analytic);
 
   const auto texture = [&](const char* name, GLint unit, const GlObject& object) {
     const GLint location = program.location(name);
@@ -167,9 +175,21 @@ void PaintGpu::apply(const GlApi& gl, const Program& program) const {
   number("u_slice_count", paint_->layout.slice_count());
   number("u_level_count", paint_->level_count);
   number("u_bins_per_rad", 1.0 / paint_->layout.bin_width_rad());
+  const std::array<double, 2> cells = paint_->flake_cells_per_bin();
+  gl.Uniform2f(program.location("u_flake_cells"), static_cast<float>(cells[0]), static_cast<float>(cells[1]));
   vector("u_lab_lo", paint_->range.lo);
   vector("u_lab_span", paint_->range.hi - paint_->range.lo);
-  vector("u_flake_fill", flake_fill_);
+  number("u_flake_m", flake_m_);
+}
+
+std::size_t PaintGpu::bytes() const {
+  const auto area = [](int width, int height) {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
+  };
+  std::size_t sum = area(textures_.table_size, textures_.table_size);
+  if (textures_.row_count == 0) return sum;
+  sum += 2 * area(core::angle_grid, core::angle_grid) + area(core::rank_table_steps, textures_.row_count);
+  return sum + area(3 * textures_.width, textures_.row_count) + area(core::random_edge, core::random_edge);
 }
 
 std::vector<std::string> PaintGpu::explain() const {

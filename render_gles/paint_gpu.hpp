@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/flake_contrast.hpp"
 #include "core/interpolatable_paint.hpp"
 #include "core/paint_textures.hpp"
 #include "core/realise.hpp"
@@ -42,6 +43,17 @@ class PaintGpu {
   [[nodiscard]] std::vector<std::string> explain() const;
 
   [[nodiscard]] const UploadCount& uploads() const { return uploads_; }
+  /// Counts what another part of the renderer sent because of this paint's weights.
+  void count_upload(std::size_t bytes) {
+    ++uploads_.uploads;
+    uploads_.bytes += bytes;
+  }
+  [[nodiscard]] const core::InterpolatablePaint& source() const { return *paint_; }
+  [[nodiscard]] bool has_flakes() const { return textures_.row_count > 0; }
+  /// From this mip level on the sum of the flakes under a pixel varies by less than `contrast` of its mean.
+  [[nodiscard]] double calm_level(double contrast) const { return core::calm_level(contrast_, contrast); }
+  /// Bytes of its textures.
+  [[nodiscard]] std::size_t bytes() const;
   /// Edge of a level-0 flake texel, mm; 0 without flakes.
   [[nodiscard]] float texel_mm() const { return paint_->texel_mm; }
   /// The numbers the GPU sees, for tests and for the CPU model. Valid until the next update.
@@ -62,14 +74,16 @@ class PaintGpu {
   core::PaintTextures textures_;
   core::Weights weights_;
   int lobes_ = 0;
-  bool table_ = false, coat_ = false, refraction_ = false;
-  glm::vec3 flake_fill_{0.0f};
+  bool table_ = false, coat_ = false, refraction_ = false, diffuse_ = false;
+  int narrow_ = 0;
+  std::vector<double> contrast_;  ///< of the flakes, per mip level
+  double flake_m_ = 1.0;
   GlObject chi_, mean_, slice_, rank_, corner_, random_;
   UploadCount uploads_;
 };
 
-/// Albedo of the mean flakes at normal view over their value at (0, 0), per channel: 2 times the integral of
-/// mu(t/2, t/2) sin t cos t over t in [0, pi/2], divided by mu(0, 0); 0 where mu(0, 0) is 0. studio.glsl says why.
-[[nodiscard]] glm::vec3 flake_fill(const core::InterpolatablePaint& paint, const core::PaintTextures& textures);
+/// Sets the analytic part's uniforms (what the program has of u_diffuse, u_lobe, u_inv_m, the indices). The program
+/// must be in use.
+void apply_analytic(const GlApi& gl, const Program& program, const core::AnalyticPaint& paint);
 
 }  // namespace lackwerk::gles

@@ -1,5 +1,6 @@
 #include "render_gles/program.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -7,6 +8,7 @@
 
 #include "core/check.hpp"
 #include "core/colour.hpp"
+#include "core/environment.hpp"
 #include "render_gles/shader_texts.hpp"
 
 namespace lackwerk::gles {
@@ -27,8 +29,8 @@ std::string linear_row(const char* name, int row) {
 }
 
 std::string precision(bool highp) {
-  return highp ? "precision highp float;\nprecision highp sampler2D;\n"
-               : "precision mediump float;\nprecision mediump sampler2D;\n";
+  return highp ? "#define FRAGMENT_HIGHP 1\nprecision highp float;\nprecision highp sampler2D;\n"
+               : "#define FRAGMENT_HIGHP 0\nprecision mediump float;\nprecision mediump sampler2D;\n";
 }
 
 std::string define(const char* name, int value) {
@@ -80,83 +82,131 @@ const char* surface_name(packs::SurfaceKind kind) {
 
 Features Features::canonical() const {
   Features f = *this;
-  if (f.surface != packs::SurfaceKind::paint || f.stripes) {
-    f.lobes = 0;
-    f.table = f.flakes = f.coat = f.refraction = false;
+  if (f.stripes && f.surface != packs::SurfaceKind::paint) f.stripes = false;
+  if (f.stripes) {
+    const Features bare;
+    f = {.surface = surface, .diffuse = bare.diffuse, .path = ShaderPath::none, .stripes = true, .output = output};
+    return f;
   }
-  if (f.surface == packs::SurfaceKind::paint && f.stripes) {
-    f.lights = 0;
-    f.studio = false;
+  if (f.surface != packs::SurfaceKind::paint) f.table = f.flakes = false;
+  if (f.surface != packs::SurfaceKind::floor || f.path != ShaderPath::filtered) f.floor_mirror = false;
+  if (f.path != ShaderPath::filtered) {
+    f.sparkle_lights = f.narrow = 0;
+    f.irradiance = false;
   }
-  if (f.surface != packs::SurfaceKind::paint) f.stripes = f.studio = false;  // they ask the studio's gain instead
-  if (!f.flakes) f.flake_lights = 0;
-  if (f.flake_lights > f.lights) f.flake_lights = f.lights;
-  if (f.flake_lights == 0) f.flake_taps = 1;
+  if (f.path != ShaderPath::sampled) f.still_flakes = false;
+  if (!f.diffuse && f.path == ShaderPath::filtered) f.irradiance = false;
+  if (f.path != ShaderPath::filtered) f.diffuse = true;  // the directional model always has the term
+  if (!f.flakes) {
+    f.flake_lights = f.sparkle_lights = 0;
+    f.still_flakes = false;
+  }
+  f.flake_lights = std::min(f.flake_lights, f.lights);
+  if (!f.single_flakes()) f.flake_taps = f.flake_cells = 1;
+  f.narrow &= (1 << f.lobes) - 1;
   return f;
 }
 
 std::string Features::text() const {
+  const auto counted = [](int count, const char* what) {
+    return ", " + std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+  };
   std::string out = surface_name(surface);
-  if (lobes > 0) out += ", " + std::to_string(lobes) + (lobes == 1 ? " lobe" : " lobes");
+  if (stripes) return out + ", stripes";
+  static constexpr std::array<const char*, 4> paths = {"no environment", "filtered environment", "sampled environment",
+                                                       "mirrored environment"};
+  out += std::string(", ") + paths[static_cast<std::size_t>(path)];
+  if (lobes > 0) out += counted(lobes, "lobe");
+  if (!diffuse) out += ", no diffuse part";
   if (table) out += ", colour table";
   if (coat) out += ", coat";
   if (refraction) out += ", refraction";
-  if (flakes)
-    out += flake_lights == 0 ? std::string(", mean flakes")
-                             : ", flakes of " + std::to_string(flake_lights) +
-                                   (flake_lights == 1 ? " light with " : " lights with ") + std::to_string(flake_taps) +
-                                   (flake_taps == 1 ? " tap" : " taps");
-  out += ", " + std::to_string(lights) + (lights == 1 ? " light" : " lights");
-  if (studio) out += ", studio";
-  if (stripes) out += ", stripes";
+  if (flakes && !single_flakes()) out += ", mean flakes";
+  if (single_flakes()) {
+    out +=
+        ", single flakes with" + counted(flake_taps, "tap").substr(1) + " and" + counted(flake_cells, "cell").substr(1);
+    if (sparkle_lights > 0) out += counted(sparkle_lights, "sparkle light");
+    if (flake_lights > 0) out += counted(flake_lights, "flake light");
+  }
+  if (lights > 0) out += counted(lights, "directional light");
+  if (visibility) out += ", visibility";
+  if (irradiance) out += ", baked irradiance";
+  if (floor_mirror) out += ", mirror image";
+  if (output == ShaderOutput::linear) out += ", linear output";
+  if (output == ShaderOutput::mirror_image) out += ", for the mirror image";
+  if (output == ShaderOutput::subject) out += ", as a mask";
   return out;
 }
 
-std::string vertex_source() {
-  return "#version 100\n" + precision(true) + std::string(shader_text("surface_vertex.glsl"));
+std::string vertex_source(const Features& features) {
+  return "#version 100\n" + precision(true) + define("HAS_VISIBILITY", features.visibility ? 1 : 0) +
+         define("HAS_IRRADIANCE", features.irradiance ? 1 : 0) + std::string(shader_text("surface_vertex.glsl"));
 }
 
 std::string fragment_source(const Features& features, bool fragment_highp) {
-  std::string text = "#version 100\n" + precision(fragment_highp) + language_prelude();
+  std::string text = shader_prelude(fragment_highp);
   text += define("SURFACE", static_cast<int>(features.surface));
+  text += define("PATH", static_cast<int>(features.path));
+  text += define("OUTPUT", static_cast<int>(features.output));
   text += define("LOBES", features.lobes);
+  text += define("HAS_DIFFUSE", features.diffuse ? 1 : 0);
   text += define("HAS_TABLE", features.table ? 1 : 0);
   text += define("HAS_FLAKES", features.flakes ? 1 : 0);
+  text += define("SINGLE_FLAKES", features.single_flakes() ? 1 : 0);
   text += define("FLAKE_TAPS", features.flake_taps);
+  text += define("FLAKE_CELLS", features.flake_cells);
   text += define("HAS_COAT", features.coat ? 1 : 0);
   text += define("HAS_REFRACTION", features.refraction ? 1 : 0);
   text += define("NUM_LIGHTS", features.lights);
   text += define("FLAKE_LIGHTS", features.flake_lights);
+  text += define("SPARKLE_LIGHTS", features.sparkle_lights);
+  for (int k = 0; k < 3; ++k)
+    text += define(("NARROW" + std::to_string(k)).c_str(), (features.narrow >> k & 1) != 0 ? 1 : 0);
+  text += define("HAS_VISIBILITY", features.visibility ? 1 : 0);
+  text += define("HAS_IRRADIANCE", features.irradiance ? 1 : 0);
+  text += define("FLOOR_MIRROR", features.floor_mirror ? 1 : 0);
   text += define("STRIPES", features.stripes ? 1 : 0);
-  text += define("STUDIO", features.studio ? 1 : 0);
-  for (const char* file :
-       {"paint_fetch.glsl", "paint_model.glsl", "studio.glsl", "display.glsl", "surface_fragment.glsl"})
-    text += std::string(shader_text(file)) + "\n";
+  text += "#define ENVIRONMENT_WIDTH " + literal(core::environment_width) + "\n#define ENVIRONMENT_HEIGHT " +
+          literal(core::environment_height) + "\n";
+  const auto append = [&](const char* file) { text += std::string(shader_text(file)) + "\n"; };
+  for (const char* file : {"paint_fetch.glsl", "surface_inputs.glsl", "environment.glsl", "surface_visible.glsl",
+                           "paint_model.glsl", "display.glsl"})
+    append(file);
+  if (features.path == ShaderPath::filtered) append("filtered_light.glsl");
+  if (features.path == ShaderPath::sampled) append("sampled_light.glsl");
+  append("surface_fragment.glsl");
   return text;
+}
+
+std::string shader_prelude(bool fragment_highp) {
+  return "#version 100\n" + precision(fragment_highp) + language_prelude();
+}
+
+GlObject link_program(const GlApi& gl, const std::string& vertex, const std::string& fragment,
+                      const std::vector<const char*>& attributes, const std::string& what) {
+  const GlObject vertex_shader = compile(gl, GL_VERTEX_SHADER, vertex, "vertex, " + what);
+  const GlObject fragment_shader = compile(gl, GL_FRAGMENT_SHADER, fragment, what);
+  GlObject program = make_program(gl);
+  gl.AttachShader(program.id(), vertex_shader.id());
+  gl.AttachShader(program.id(), fragment_shader.id());
+  for (GLuint slot = 0; slot < attributes.size(); ++slot) gl.BindAttribLocation(program.id(), slot, attributes[slot]);
+  gl.LinkProgram(program.id());
+  GLint ok = GL_FALSE;
+  gl.GetProgramiv(program.id(), GL_LINK_STATUS, &ok);
+  if (ok == GL_TRUE) return program;
+  std::string log(16384, '\0');
+  GLsizei length = 0;
+  gl.GetProgramInfoLog(program.id(), static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  refuse("a program does not link (" + what + ")", log, fragment);
 }
 
 Program::Program(const GlApi& gl, const Features& features, bool fragment_highp) : gl_(&gl) {
   const auto start = std::chrono::steady_clock::now();
-  const std::string what = features.text();
-  const std::string fragment_text = fragment_source(features, fragment_highp);
-  const GlObject vertex = compile(gl, GL_VERTEX_SHADER, vertex_source(), "vertex, " + what);
-  const GlObject fragment = compile(gl, GL_FRAGMENT_SHADER, fragment_text, what);
-  program_ = make_program(gl);
-  gl.AttachShader(program_.id(), vertex.id());
-  gl.AttachShader(program_.id(), fragment.id());
-  gl.BindAttribLocation(program_.id(), attribute_position, "a_position");
-  gl.BindAttribLocation(program_.id(), attribute_normal, "a_normal");
-  gl.BindAttribLocation(program_.id(), attribute_open, "a_open");
-  gl.LinkProgram(program_.id());
-  GLint ok = GL_FALSE;
-  gl.GetProgramiv(program_.id(), GL_LINK_STATUS, &ok);
-  if (ok != GL_TRUE) {
-    std::string log(16384, '\0');
-    GLsizei length = 0;
-    gl.GetProgramInfoLog(program_.id(), static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
-    refuse("a program does not link (" + what + ")", log, fragment_text);
-  }
+  // Slots as attribute_position and its neighbours say.
+  program_ = link_program(gl, vertex_source(features), fragment_source(features, fragment_highp),
+                          {"a_position", "a_normal", "a_irradiance", "a_visible0", "a_visible1", "a_visible2"},
+                          features.text());
   GLint count = 0;
   gl.GetProgramiv(program_.id(), GL_ACTIVE_UNIFORMS, &count);
   for (GLint k = 0; k < count; ++k) {
@@ -168,15 +218,20 @@ Program::Program(const GlApi& gl, const Features& features, bool fragment_highp)
                         name.data());
     std::string text(name.data(), static_cast<std::size_t>(length));
     if (const auto bracket = text.find('['); bracket != std::string::npos) text.resize(bracket);
-    locations_[text] = gl.GetUniformLocation(program_.id(), text.c_str());
+    uniforms_[text] = {gl.GetUniformLocation(program_.id(), text.c_str()), size};
     if (type != GL_SAMPLER_2D) uniform_vectors_ += size * (type == GL_FLOAT_MAT4 ? 4 : 1);
   }
   compile_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 GLint Program::location(std::string_view uniform) const {
-  const auto found = locations_.find(uniform);
-  return found == locations_.end() ? -1 : found->second;
+  const auto found = uniforms_.find(uniform);
+  return found == uniforms_.end() ? -1 : found->second.location;
+}
+
+int Program::size(std::string_view uniform) const {
+  const auto found = uniforms_.find(uniform);
+  return found == uniforms_.end() ? 0 : found->second.size;
 }
 
 const Program& ProgramCache::get(const Features& features) {

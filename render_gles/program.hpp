@@ -21,23 +21,39 @@ namespace lackwerk::gles {
 /// "paint", "glass", ...: for messages.
 [[nodiscard]] const char* surface_name(packs::SurfaceKind kind);
 
+/// Where a surface's light from the environment comes from: PATH in surface_fragment.glsl.
+enum class ShaderPath : int { none = 0, filtered = 1, sampled = 2, mirror = 3 };
+/// What the fragment shader writes.
+enum class ShaderOutput : int { display = 0, linear = 1, mirror_image = 2, subject = 3 };
+
 /// The switches of surface_fragment.glsl and paint_model.glsl.
 struct Features {
   packs::SurfaceKind surface = packs::SurfaceKind::paint;
   int lobes = 0;  ///< [0, 3]
+  bool diffuse = true;
   bool table = false;
   bool flakes = false;  ///< single flakes or their mean
   int flake_taps = 1;   ///< 1 (nearest slice) or 4 (bilinear)
+  int flake_cells = 1;  ///< 1 (nearest random cell) or 4 (cross-faded): how flakes live along the angles
   bool coat = false;
   bool refraction = false;
-  int lights = 0;        ///< directional lights, [0, 4]
-  int flake_lights = 0;  ///< how many of them show single flakes; the others show the mean
+  ShaderPath path = ShaderPath::filtered;
+  int narrow = 0;             ///< bit k: lobe k may need environment levels below 2
+  int lights = 0;             ///< directional lights, [0, 4]
+  int flake_lights = 0;       ///< how many of them show single flakes; the others show the mean
+  int sparkle_lights = 0;     ///< lights of the environment that show single flakes on the filtered path, [0, 4]
+  bool still_flakes = false;  ///< single flakes on the sampled path
+  bool visibility = false;    ///< baked, per vertex
+  bool irradiance = false;    ///< baked, per vertex
+  bool floor_mirror = false;
   bool stripes = false;
-  bool studio = false;
+  ShaderOutput output = ShaderOutput::display;
   auto operator<=>(const Features&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
 
   /// The same picture with the fewest switches on: equal pictures share one program.
   [[nodiscard]] Features canonical() const;
+  /// Whether the flake textures are read.
+  [[nodiscard]] bool single_flakes() const { return flake_lights > 0 || sparkle_lights > 0 || still_flakes; }
   /// "paint, 3 lobes, table, ..." for explanations.
   [[nodiscard]] std::string text() const;
 };
@@ -50,6 +66,8 @@ class Program {
   void use() const { gl_->UseProgram(program_.id()); }
   /// Location of an active uniform (arrays without "[0]"); -1, which GL ignores, if it was compiled out.
   [[nodiscard]] GLint location(std::string_view uniform) const;
+  /// Elements of an active uniform array; 0 if it was compiled out.
+  [[nodiscard]] int size(std::string_view uniform) const;
   [[nodiscard]] double compile_ms() const { return compile_ms_; }
   /// Active fragment and vertex uniforms in vec4 units, counted without packing.
   [[nodiscard]] int uniform_vectors() const { return uniform_vectors_; }
@@ -57,7 +75,11 @@ class Program {
  private:
   const GlApi* gl_;
   GlObject program_;
-  std::map<std::string, GLint, std::less<>> locations_;
+  struct Uniform {
+    GLint location = -1;
+    GLint size = 0;
+  };
+  std::map<std::string, Uniform, std::less<>> uniforms_;
   double compile_ms_ = 0.0;
   int uniform_vectors_ = 0;
 };
@@ -65,7 +87,15 @@ class Program {
 /// Attribute slots, bound before linking.
 inline constexpr GLuint attribute_position = 0;
 inline constexpr GLuint attribute_normal = 1;
-inline constexpr GLuint attribute_open = 2;
+inline constexpr GLuint attribute_irradiance = 2;
+inline constexpr GLuint attribute_visible = 3;  ///< and the two after it
+
+/// "#version 100", precision, and what the texts shared with C++ need; for fragment shaders.
+[[nodiscard]] std::string shader_prelude(bool fragment_highp);
+/// Compiles and links; `attributes` get slots 0, 1, ... Aborts with log and source if the driver refuses: the texts are
+/// ours. `what` is for the message.
+[[nodiscard]] GlObject link_program(const GlApi& gl, const std::string& vertex, const std::string& fragment,
+                                    const std::vector<const char*>& attributes, const std::string& what);
 
 class ProgramCache {
  public:
@@ -84,7 +114,7 @@ class ProgramCache {
 };
 
 /// The complete texts, for tests and offline validators.
-[[nodiscard]] std::string vertex_source();
+[[nodiscard]] std::string vertex_source(const Features& features);
 [[nodiscard]] std::string fragment_source(const Features& features, bool fragment_highp);
 
 }  // namespace lackwerk::gles

@@ -1,15 +1,64 @@
 #include "render_gles/renderer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
+#include <map>
 
 #include "core/check.hpp"
 #include "render_gles/display_model.hpp"
 
 namespace lackwerk::gles {
+namespace {
 
-Renderer::Renderer(Context& context) : context_(context), gl_(context.gl()), programs_(context) {}
+/// The floor's mirror image is drawn this much smaller than the picture: the polished floor blurs it anyway.
+constexpr int mirror_reduction = 3;
+constexpr int smallest_mirror_px = 32;
+
+float luminance_of(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+/// Directional lights of the mood and, on that path, of the environment's cut.
+std::vector<DirectionalLight> all_lights(const Lighting& lighting, const core::Environment& environment) {
+  std::vector<DirectionalLight> lights = lighting.lights;
+  if (lighting.quality.path == LightPath::lights) {
+    const std::vector<core::EnvironmentLight> cut = core::lights_of(environment, lighting.quality.cut_lights);
+    std::transform(cut.begin(), cut.end(), std::back_inserter(lights), [&](const core::EnvironmentLight& light) {
+      return DirectionalLight{light.direction, light.radiance * lighting.environment_gain};
+    });
+  }
+  std::stable_sort(lights.begin(), lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
+    return luminance_of(a.radiance) > luminance_of(b.radiance);
+  });
+  return lights;
+}
+
+/// Boxes of the paint's triangles, gathered in cells of a grid by their middles.
+std::vector<Box> paint_cells(const packs::Scene& scene) {
+  constexpr float cell_mm = 400.0f;
+  std::map<std::array<int, 3>, Box> cells;
+  for (const packs::MeshPart& part : scene.parts) {
+    if (part.kind != packs::SurfaceKind::paint) continue;
+    for (std::size_t k = 0; k + 2 < part.indices.size(); k += 3) {
+      Box triangle;
+      for (std::size_t corner = 0; corner < 3; ++corner) triangle.include(part.positions_mm[part.indices[k + corner]]);
+      const glm::vec3 middle = triangle.centre() / cell_mm;
+      cells[{static_cast<int>(std::floor(middle.x)), static_cast<int>(std::floor(middle.y)),
+             static_cast<int>(std::floor(middle.z))}]
+          .include(triangle);
+    }
+  }
+  std::vector<Box> boxes;
+  boxes.reserve(cells.size());
+  for (const auto& [key, box] : cells) boxes.push_back(box);
+  return boxes;
+}
+
+}  // namespace
+
+Renderer::Renderer(Context& context)
+    : context_(context), gl_(context.gl()), programs_(context), screen_(context), materials_(context.gl()) {}
 
 Renderer::~Renderer() {
   // A context that cannot be made current any more has taken its objects with it.
@@ -19,14 +68,22 @@ Renderer::~Renderer() {
 void Renderer::set_scene(const packs::Scene& scene) {
   mesh_ = MeshBuffers(gl_, scene);
   boxes_.clear();
+  paint_boxes_.clear();
   bounds_ = {};
-  Box standing;
   for (const MeshBuffers::Draw& draw : mesh_.draws()) {
     boxes_.push_back(draw.box);
     bounds_.include(draw.box);
-    if (draw.surface != packs::SurfaceKind::floor) standing.include(draw.box);
   }
-  floor_shadow_ = standing.empty() ? glm::vec2(0.0f) : glm::vec2(standing.hi - standing.lo) * 0.5f;
+  paint_boxes_ = paint_cells(scene);
+  environment_texture_ = upload_environment(gl_, scene.environment);
+  environment_ = scene.environment;
+  environment_.atlas.clear();
+  environment_.atlas.shrink_to_fit();
+  irradiance_range_ = scene.irradiance_range;
+  // Of the cut into 16: of 64 the four strongest would hold too little of a room's light, and moving pictures would
+  // sparkle less than resting ones.
+  sparkle_ = core::lights_of(environment_, 16);
+  sparkle_.resize(std::min(sparkle_.size(), static_cast<std::size_t>(max_lights)));
   ++revision_;
   check_gl(gl_, "upload of a scene");
 }
@@ -43,90 +100,85 @@ Result<void> Renderer::update(const core::Weights& weights) {
   check_equal(paint_.has_value(), true, "set_paint before update");
   const auto changed = paint_->update(weights);
   if (!changed) return tl::unexpected(changed.error());
-  if (*changed) ++revision_;
+  if (!*changed) return {};
+  paint_->count_upload(materials_.set_paint(gl_, paint_->source(), paint_->analytic(), paint_->textures()));
+  ++revision_;
   return {};
 }
 
+Renderer::Frame Renderer::frame_of(const View& view, const Lighting& lighting, const Framebuffer& target) const {
+  return {view, lighting, target.width(), target.height(), target.texture(), revision_};
+}
+
 bool Renderer::needs_draw(const View& view, const Lighting& lighting, const Framebuffer& target) const {
-  return drawn_ != Frame{view, lighting, target.width(), target.height(), target.texture(), revision_};
+  return drawn_ != frame_of(view, lighting, target);
 }
 
-Features Renderer::features_of(packs::SurfaceKind surface, const Lighting& lighting) const {
-  Features features;
-  features.surface = surface;
-  features.lights = std::min(static_cast<int>(lighting.lights.size()), usable_lights(context_.info()));
-  features.studio = lighting.studio;
-  features.stripes = lighting.stripes;
-  features.flakes = lighting.flakes != FlakeMode::off;
-  const bool single = lighting.flakes == FlakeMode::nearest || lighting.flakes == FlakeMode::bilinear;
-  features.flake_lights = single ? std::clamp(lighting.flake_lights, 0, features.lights) : 0;
-  features.flake_taps = lighting.flakes == FlakeMode::bilinear ? 4 : 1;
-  if (paint_) paint_->add_features(features);
-  return features.canonical();
+bool Renderer::flakes_show(const View& view, int height, double contrast) const {
+  if (!paint_ || !paint_->has_flakes()) return false;
+  if (keep_.single_flakes) return true;
+  // 16-bit floats cannot tell the texels of a car apart, nor the rare ranks.
+  if (!context_.info().fragment_highp) return false;
+  return finest_level(view, height) < paint_->calm_level(contrast);
 }
 
-void Renderer::apply_frame(const Program& program, const Frame& frame, const glm::mat4& clip) const {
-  const auto vector = [&](const char* name, const glm::vec3& v) {
-    gl_.Uniform3f(program.location(name), v.x, v.y, v.z);
-  };
-  const auto number = [&](const char* name, float v) { gl_.Uniform1f(program.location(name), v); };
-  const Lighting& lighting = frame.lighting;
-  program.use();
-  gl_.UniformMatrix4fv(program.location("u_clip_from_world"), 1, GL_FALSE, &clip[0][0]);
-  vector("u_eye", frame.view.eye_mm);
-  number("u_exposure", lighting.exposure);
-  number("u_dither", lighting.dither ? 1.0f : 0.0f);
-  vector("u_backdrop", lighting.backdrop);
-  number("u_lamp_glow", lighting.lamp_glow);
-  number("u_studio_gain", lighting.studio ? lighting.studio_gain : 0.0f);
-  gl_.Uniform2f(program.location("u_floor_shadow"), floor_shadow_.x, floor_shadow_.y);
-  std::vector<float> directions, radiances;
-  const std::size_t usable = std::min(lighting.lights.size(), static_cast<std::size_t>(usable_lights(context_.info())));
-  for (const DirectionalLight& light : std::span(lighting.lights).first(usable))
-    for (int c = 0; c < 3; ++c) {
-      directions.push_back(light.direction[c]);
-      radiances.push_back(light.radiance[c]);
-    }
-  if (const auto count = static_cast<GLsizei>(usable); count > 0) {
-    gl_.Uniform3fv(program.location("u_light_dir"), count, directions.data());
-    gl_.Uniform3fv(program.location("u_light"), count, radiances.data());
+double Renderer::finest_level(const View& view, int height) const {
+  float nearest = 1e30f;
+  for (const Box& box : paint_boxes_)
+    nearest = std::min(nearest, glm::distance(glm::clamp(view.eye_mm, box.lo, box.hi), view.eye_mm));
+  // surface_lod at normal view.
+  const float texels = nearest * pixel_size_per_mm(view, height) / paint_->texel_mm();
+  return static_cast<double>(std::log2(std::max(texels, 1e-4f)) + 0.585f);
+}
+
+Renderer::Pass Renderer::moving_pass(const Frame& frame, std::vector<DirectionalLight>& lights) const {
+  const Quality& quality = frame.lighting.quality;
+  Pass pass;
+  pass.path = quality.path == LightPath::none       ? ShaderPath::none
+              : quality.path == LightPath::filtered ? ShaderPath::filtered
+                                                    : ShaderPath::mirror;
+  lights = all_lights(frame.lighting, environment_);
+  pass.lights = lights;
+  const bool single = (quality.flakes == FlakeMode::nearest || quality.flakes == FlakeMode::bilinear) &&
+                      flakes_show(frame.view, frame.height, moving_contrast);
+  pass.flake_lights = single ? quality.flake_lights : 0;
+  if (single && pass.path == ShaderPath::filtered)
+    pass.sparkle_lights =
+        std::min({quality.sparkle_lights, static_cast<int>(sparkle_.size()),
+                  usable_sparkle_lights(context_.info(), static_cast<int>(frame.lighting.lights.size()))});
+  pass.detail = quality.coarse ? packs::detail_coarse : packs::detail_full;
+  pass.floor_mirror = quality.floor_mirror && pass.path == ShaderPath::filtered && !frame.lighting.stripes &&
+                      mesh_.has(packs::SurfaceKind::floor);
+  return pass;
+}
+
+std::vector<const MeshBuffers::Draw*> Renderer::order_of(const View& view, const Pass& pass, bool glass) const {
+  std::vector<const MeshBuffers::Draw*> order;
+  for (const MeshBuffers::Draw& draw : mesh_.draws()) {
+    if ((draw.detail & pass.detail) == 0) continue;
+    // In the mirror image glass is a dark surface among others.
+    if (!pass.mirrored && (draw.surface == packs::SurfaceKind::glass) != glass) continue;
+    if (pass.mirrored && draw.surface == packs::SurfaceKind::floor) continue;
+    order.push_back(&draw);
   }
-  if (!paint_) return;
-  paint_->apply(gl_, program);
-  const float texels_per_mm = paint_->texel_mm() > 0.0f ? 1.0f / paint_->texel_mm() : 0.0f;
-  number("u_texels_per_mm", texels_per_mm);
-  number("u_pixel_texels", pixel_size_per_mm(frame.view, frame.height) * texels_per_mm);
-}
-
-std::vector<const MeshBuffers::Draw*> Renderer::opaque_order(const View& view) const {
-  std::vector<const MeshBuffers::Draw*> order;
-  for (const MeshBuffers::Draw& draw : mesh_.draws())
-    if (draw.surface != packs::SurfaceKind::glass) order.push_back(&draw);
   // Front to back, so that the depth test spares hidden paint its shading; the floor lies behind nearly everything.
+  // Glass is blended: back to front.
   const auto key = [&](const MeshBuffers::Draw* draw) {
-    const bool floor = draw->surface == packs::SurfaceKind::floor;
-    return std::pair(floor, glm::distance(draw->box.centre(), view.eye_mm));
+    const float distance = glm::distance(draw->box.centre(), view.eye_mm);
+    return std::pair(draw->surface == packs::SurfaceKind::floor, glass ? -distance : distance);
   };
   std::stable_sort(order.begin(), order.end(), [&](const auto* a, const auto* b) { return key(a) < key(b); });
   return order;
 }
 
-std::vector<const MeshBuffers::Draw*> Renderer::glass_order(const View& view) const {
-  std::vector<const MeshBuffers::Draw*> order;
-  for (const MeshBuffers::Draw& draw : mesh_.draws())
-    if (draw.surface == packs::SurfaceKind::glass) order.push_back(&draw);
-  const auto key = [&](const MeshBuffers::Draw* draw) { return -glm::distance(draw->box.centre(), view.eye_mm); };
-  std::stable_sort(order.begin(), order.end(), [&](const auto* a, const auto* b) { return key(a) < key(b); });
-  return order;
-}
-
-void Renderer::draw_parts(const std::vector<const MeshBuffers::Draw*>& parts, const Frame& frame,
+void Renderer::draw_parts(const std::vector<const MeshBuffers::Draw*>& parts, const Frame& frame, const Pass& pass,
                           const glm::mat4& clip) {
-  std::vector<const Program*> applied;  // programs keep their uniforms: set them once a frame
+  std::vector<const Program*> applied;  // programs keep their uniforms: set them once a pass
   for (const MeshBuffers::Draw* part : parts) {
-    const Program& program = programs_.get(features_of(part->surface, frame.lighting));
+    const Program& program = programs_.get(features_of(*part, frame.lighting, pass));
     if (std::find(applied.begin(), applied.end(), &program) == applied.end()) {
-      apply_frame(program, frame, clip);
+      apply_frame(program, frame, pass, clip);
+      apply_material(program, part->surface, frame, pass);
       applied.push_back(&program);
     }
     program.use();
@@ -134,45 +186,159 @@ void Renderer::draw_parts(const std::vector<const MeshBuffers::Draw*>& parts, co
   }
 }
 
-void Renderer::prepare(const Lighting& lighting) {
-  for (const MeshBuffers::Draw& draw : mesh_.draws()) programs_.get(features_of(draw.surface, lighting));
+void Renderer::draw_pass(const Frame& frame, const Pass& pass, const Framebuffer& target) {
+  std::vector<Box> boxes = boxes_;
+  if (pass.mirrored)
+    for (Box& box : boxes) {
+      const float low = box.lo.z;
+      box.lo.z = -box.hi.z;
+      box.hi.z = -low;
+    }
+  glm::mat4 clip = clip_from_world(frame.view, frame.width, frame.height, boxes);
+  if (pass.mirrored) clip[2] = -clip[2];  // z of the world turned over
+
+  target.bind();
+  glm::vec4 sky(0.0f);
+  if (!pass.mirrored && !pass.black) {
+    const glm::vec3& backdrop = frame.lighting.backdrop;
+    sky = glm::vec4(pass.output == ShaderOutput::display ? DisplayModel<float>().display_transform(backdrop) : backdrop,
+                    1.0f);
+  }
+  gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  gl_.DepthMask(GL_TRUE);
+  gl_.Disable(GL_BLEND);
+  gl_.Disable(GL_SCISSOR_TEST);
+  gl_.ClearColor(sky.x, sky.y, sky.z, sky.w);
+  gl_.ClearDepthf(1.0f);
+  gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthFunc(GL_LEQUAL);
+  if (pass.mirrored) {
+    gl_.Disable(GL_CULL_FACE);
+  } else {
+    gl_.Enable(GL_CULL_FACE);
+  }
+  gl_.CullFace(GL_BACK);
+  gl_.FrontFace(pass.mirrored ? GL_CW : GL_CCW);
+  gl_.Disable(GL_DITHER);
+  View from = frame.view;
+  if (pass.mirrored) from.eye_mm.z = -from.eye_mm.z;
+  draw_parts(order_of(from, pass, false), frame, pass, clip);
+
+  if (!pass.mirrored && mesh_.has(packs::SurfaceKind::glass)) {
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl_.DepthMask(GL_FALSE);
+    draw_parts(order_of(from, pass, true), frame, pass, clip);
+    gl_.DepthMask(GL_TRUE);
+    gl_.Disable(GL_BLEND);
+  }
+  check_gl(gl_, "drawing a frame");
+}
+
+void Renderer::draw_mirror(const Frame& frame) {
+  const int width = std::max(frame.width / mirror_reduction, smallest_mirror_px);
+  const int height = std::max(frame.height / mirror_reduction, smallest_mirror_px);
+  if (!mirror_ || mirror_->width() != width || mirror_->height() != height) {
+    auto made = Framebuffer::create(context_, width, height);
+    check_equal(made.has_value(), true, "a mirror image is smaller than a picture that could be drawn");
+    mirror_ = std::move(*made);
+  }
+  Pass pass;
+  pass.output = ShaderOutput::mirror_image;
+  pass.detail = packs::detail_coarse;
+  pass.lights = std::span(frame.lighting.lights).first(std::min<std::size_t>(frame.lighting.lights.size(), 1));
+  pass.mirrored = true;
+  draw_pass(frame, pass, *mirror_);
+}
+
+void Renderer::draw_cut_lights(const Frame& frame, const Framebuffer& target) {
+  std::vector<DirectionalLight> lights;
+  const Pass whole = moving_pass(frame, lights);
+  const auto at_once = static_cast<std::size_t>(usable_lights(context_.info()));
+  check_equal(ensure_accumulator(frame.width, frame.height).has_value(), true, "targets as large as the picture");
+  accumulator_->reset();
+  for (std::size_t first = 0; first < lights.size(); first += at_once) {
+    Pass pass = whole;
+    pass.lights = std::span(lights).subspan(first, std::min(at_once, lights.size() - first));
+    pass.flake_lights = std::max(0, whole.flake_lights - static_cast<int>(first));
+    pass.output = accumulator_->linear() ? ShaderOutput::linear : ShaderOutput::display;
+    pass.black = first > 0;
+    if (first > 0) pass.path = ShaderPath::none;
+    draw_pass(frame, pass, accumulator_->frame());
+    if (first == 0) {
+      accumulator_->add(screen_);
+    } else {
+      accumulator_->add_to_last(screen_);
+    }
+  }
+  accumulator_->show(screen_, target, frame.lighting.dither, 1.0f);
+  refined_.reset();
+}
+
+void Renderer::draw_moving(const Frame& frame, ShaderOutput output, const Framebuffer& target) {
+  std::vector<DirectionalLight> lights;
+  Pass pass = moving_pass(frame, lights);
+  pass.output = output;
+  if (static_cast<int>(lights.size()) > usable_lights(context_.info()) && output == ShaderOutput::display &&
+      pass.path == ShaderPath::mirror) {
+    draw_cut_lights(frame, target);
+    return;
+  }
+  pass.lights = pass.lights.first(std::min(lights.size(), static_cast<std::size_t>(usable_lights(context_.info()))));
+  if (pass.floor_mirror) draw_mirror(frame);
+  draw_pass(frame, pass, target);
 }
 
 void Renderer::draw(const View& view, const Lighting& lighting, const Framebuffer& target) {
   check_at_most(lighting.lights.size(), static_cast<std::size_t>(max_lights), "directional lights");
   if (mesh_.has(packs::SurfaceKind::paint) && !lighting.stripes)
     check_equal(paint_ && !paint_->pending(), true, "set_paint and update before a scene with paint is drawn");
-  const Frame frame{view, lighting, target.width(), target.height(), target.texture(), revision_};
-  const glm::mat4 clip = clip_from_world(view, frame.width, frame.height, boxes_);
-
-  target.bind();
-  const auto sky = DisplayModel<float>().display_transform(lighting.backdrop);
-  gl_.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  gl_.DepthMask(GL_TRUE);
-  gl_.Disable(GL_BLEND);
-  gl_.Disable(GL_SCISSOR_TEST);
-  gl_.ClearColor(sky.x, sky.y, sky.z, 1.0f);
-  gl_.ClearDepthf(1.0f);
-  gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.DepthFunc(GL_LEQUAL);
-  gl_.Enable(GL_CULL_FACE);
-  gl_.CullFace(GL_BACK);
-  gl_.FrontFace(GL_CCW);
-  gl_.Disable(GL_DITHER);
-  draw_parts(opaque_order(view), frame, clip);
-
-  if (mesh_.has(packs::SurfaceKind::glass)) {
-    gl_.Enable(GL_BLEND);
-    gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    gl_.DepthMask(GL_FALSE);
-    draw_parts(glass_order(view), frame, clip);
-    gl_.DepthMask(GL_TRUE);
-    gl_.Disable(GL_BLEND);
+  const Frame frame = frame_of(view, lighting, target);
+  const float scale = std::clamp(lighting.quality.scale, 0.25f, 1.0f);
+  if (scale < 1.0f || lighting.quality.smooth_edges) {
+    Frame own = frame;
+    own.width = std::max(1, static_cast<int>(std::lround(static_cast<float>(frame.width) * scale)));
+    own.height = std::max(1, static_cast<int>(std::lround(static_cast<float>(frame.height) * scale)));
+    if (!unfinished_ || unfinished_->width() != own.width || unfinished_->height() != own.height) {
+      auto made = Framebuffer::create(context_, own.width, own.height);
+      check_equal(made.has_value(), true, "a picture no larger than one that could be drawn");
+      unfinished_ = std::move(*made);
+    }
+    draw_moving(own, ShaderOutput::display, *unfinished_);
+    if (lighting.quality.smooth_edges) {
+      screen_.smooth(*unfinished_, target);
+    } else {
+      screen_.copy(unfinished_->texture(), target, 1.0f, ScreenPass::Blend::replace);
+    }
+  } else {
+    draw_moving(frame, ShaderOutput::display, target);
   }
-  check_gl(gl_, "drawing a frame");
+  target.bind();
+  left_out_flakes_ = !flakes_show(view, frame.height, moving_contrast);
   drawn_ = frame;
+  refined_.reset();
   ++draws_;
+}
+
+void Renderer::prepare(const View& view, const Lighting& lighting, const Framebuffer& target) {
+  const Frame frame = frame_of(view, lighting, target);
+  std::vector<DirectionalLight> lights;
+  Pass pass = moving_pass(frame, lights);
+  pass.lights = pass.lights.first(std::min(lights.size(), static_cast<std::size_t>(usable_lights(context_.info()))));
+  for (const MeshBuffers::Draw& draw : mesh_.draws()) programs_.get(features_of(draw, lighting, pass));
+}
+
+GpuBytes Renderer::gpu_bytes() const {
+  GpuBytes out;
+  out.geometry = mesh_.bytes();
+  if (environment_texture_) out.environment = std::size_t{core::environment_width} * core::environment_height * 4;
+  if (paint_) out.paint = paint_->bytes();
+  out.materials = MaterialTable::bytes();
+  if (mirror_) out.pictures += mirror_->bytes();
+  if (unfinished_) out.pictures += unfinished_->bytes();
+  if (accumulator_) out.pictures += accumulator_->bytes();
+  return out;
 }
 
 }  // namespace lackwerk::gles

@@ -1,137 +1,198 @@
-// All surfaces; SURFACE (a packs::SurfaceKind as a number) picks the rule. Appended to prelude, paint_fetch.glsl,
-// paint_model.glsl, studio.glsl and display.glsl.
+// All surfaces. Appended to prelude, paint_fetch.glsl, environment.glsl, paint_model.glsl, display.glsl, and
+// filtered_light.glsl or sampled_light.glsl.
 //
-// Switches: SURFACE 0..9, NUM_LIGHTS 0..4, FLAKE_LIGHTS 0..4, STRIPES 0/1, STUDIO 0/1, and those of paint_model.glsl.
-// The uniforms and fetches that paint_model.glsl and studio.glsl expect are declared in paint_fetch.glsl.
-// Uniforms: vec3 u_eye (mm); vec3 u_light_dir[NUM_LIGHTS] (towards the light, unit); vec3 u_light[NUM_LIGHTS] (E/pi,
-// linear sRGB); float u_exposure; float u_dither (0 or 1); float u_texels_per_mm; float u_pixel_texels (level-0 texels
-// per pixel and mm of distance); vec3 u_backdrop (linear sRGB after exposure; the floor fades into it); float
-// u_lamp_glow (radiance of switched-on lamps).
+// Switches: SURFACE 0..9 (a packs::SurfaceKind as a number); PATH 0 (no environment), 1 (filtered), 2 (sampled),
+// 3 (the coat's mirror alone); NUM_LIGHTS 0..4 directional lights, FLAKE_LIGHTS of them with single flakes;
+// SPARKLE_LIGHTS 0..4 lights of the environment whose single flakes are added to the filtered mean; STRIPES,
+// HAS_VISIBILITY, HAS_IRRADIANCE, FLOOR_MIRROR, OUTPUT 0 (display), 1 (scene-linear times exposure), 2 (for the floor's
+// mirror), 3 (a mask: white but for the floor), and those of paint_model.glsl.
+// Uniforms: vec4 u_frame (exposure; dither 0 or 1; level-0 texels per pixel and metre of distance; texels per metre);
+// vec4 u_backdrop (linear sRGB after exposure, into which the floor fades; lamp glow); vec3 u_light_dir[], u_light[]
+// (towards the light; E/pi); vec3 u_sparkle_at[] (points on the room, m, or directions where it is far away),
+// u_sparkle[] (E/pi); vec3 u_emission; float u_cover (glass).
 varying vec3 v_position;
+varying vec3 v_to_eye;
 varying vec3 v_normal;
-varying float v_open;
-uniform vec3 u_eye;
-uniform float u_exposure;
-uniform float u_dither;
-uniform vec3 u_backdrop;
-uniform float u_lamp_glow;
+uniform vec4 u_frame;
+uniform vec4 u_backdrop;
+#if HAS_IRRADIANCE
+varying vec3 v_irradiance;
+uniform float u_gain;  // of the mood, on the baked irradiance
+#endif
 #if NUM_LIGHTS > 0
 uniform vec3 u_light_dir[NUM_LIGHTS];
 uniform vec3 u_light[NUM_LIGHTS];
 #endif
-#if SURFACE == 0 && HAS_FLAKES
-uniform float u_texels_per_mm;
-uniform float u_pixel_texels;
+#if SPARKLE_LIGHTS > 0
+uniform vec3 u_sparkle_at[SPARKLE_LIGHTS];
+uniform vec3 u_sparkle[SPARKLE_LIGHTS];
+#endif
+#if SURFACE == 6 || SURFACE == 7
+uniform vec3 u_emission;
+#endif
+#if SURFACE == 1
+uniform float u_cover;
+#endif
+#if FLOOR_MIRROR
+uniform sampler2D u_mirror;
+uniform vec4 u_mirror_step;  // 1 / picture size; blur in texture coordinates
 #endif
 
-// Light that falls on a matt surface: the lamps, as E/pi.
-vec3 lamps(vec3 n) {
-  vec3 sum = vec3(0.0);
-#if NUM_LIGHTS > 0
-  for (int k = 0; k < NUM_LIGHTS; ++k) sum += u_light[k] * max(dot(n, u_light_dir[k]), 0.0);
-#endif
-  return sum;
+vec3 mirror_direction(vec3 n, vec3 o) { return n * (2.0 * dot(n, o)) - o; }
+
+// Stripes for judging surfaces: what body designers reflect in a flank. d: the mirrored view direction.
+vec3 stripe_radiance(vec3 d) {
+  float angle = atan(d.y, d.z) * 0.3183098861837907;  // around the car's length, in units of 180 degrees
+  float s = abs(fract(angle * 12.0) - 0.5) * 2.0;
+  return vec3(0.03 + 0.87 * clamp((s - 0.5) * 14.0 + 0.5, 0.0, 1.0));
 }
-// Their shine on a surface of roughness m, with the paint's own lobe.
-vec3 lamps_gloss(vec3 n, vec3 o, float inv_m) {
-  vec3 sum = vec3(0.0);
-#if NUM_LIGHTS > 0
-  for (int k = 0; k < NUM_LIGHTS; ++k) {
-    Geometry g = paint_geometry(n, u_light_dir[k], o);
-    if (g.iz > MIN_COSINE && g.oz > MIN_COSINE)
-      sum += u_light[k] * (g.iz * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, inv_m));
-  }
-#endif
-  return sum;
-}
-float gloss_fresnel(vec3 n, vec3 o, float f0) { return fresnel_schlick(max(dot(n, o), 0.0), f0); }
 
 // One light on the paint. Written out per light in shade(), not as a loop: a compiler that does not unroll so long a
 // body would keep the flake code alive for lights that show none.
-vec3 paint_light(vec3 i, vec3 radiance, vec3 n, vec3 o, vec2 texel, float lod, float show_flakes) {
-  return radiance * (max(dot(n, i), 0.0) * paint_factor(n, i, o, texel, lod, show_flakes));
+vec3 light_on_paint(vec3 i, vec3 radiance, vec3 n, vec3 o, vec2 texel, float lod, float show_flakes) {
+  return radiance * (visible(i) * max(dot(n, i), 0.0) * paint_factor(n, i, o, texel, lod, show_flakes));
 }
 
-// Returns linear colour and coverage (premultiplied).
-vec4 shade(vec3 n, vec3 o, vec3 p, float open, float distance_mm) {
+#if SPARKLE_LIGHTS > 0
+// Single flakes of one light less their mean, which the filtered environment already shows.
+vec3 sparkle(vec3 at, vec3 radiance, vec3 p, vec3 n, vec3 o, vec2 texel, float lod) {
+  vec3 i = normalize(u_room.w > 0.0 ? at - p : at);
+  float ci = dot(n, i);
+  if (ci <= 0.0) return vec3(0.0);
+#if HAS_REFRACTION
+  Geometry g = paint_geometry(n, refract_into(i, n, u_refraction_ior), refract_into(o, n, u_refraction_ior));
+#else
+  Geometry g = paint_geometry(n, i, o);
+#endif
+  float through = 1.0;
+#if HAS_COAT
+  through = (1.0 - fresnel_dielectric(ci, u_coat_ior)) * (1.0 - fresnel_dielectric(dot(n, o), u_coat_ior));
+#endif
+  return radiance * ((flake_factor(g.theta_h, g.theta_i, texel, lod) - flake_mean(g.theta_h, g.theta_i)) *
+                     (through * ci * visible(i)));
+}
+#endif
+
+// Returns linear colour and coverage (premultiplied). p in metres.
+vec4 shade(vec3 n, vec3 o, vec3 p, float distance_m) {
   vec3 r = mirror_direction(n, o);
-#if SURFACE == 0
 #if STRIPES
   return vec4(stripe_radiance(r), 1.0);
 #else
-  vec3 sum = vec3(0.0);
-#if NUM_LIGHTS > 0
+  float co = max(dot(n, o), 0.0);
   vec2 texel = vec2(0.0);
   float lod = 0.0;
-#if HAS_FLAKES
-  texel = surface_texel(p, n, u_texels_per_mm);
-  lod = surface_lod(distance_mm, dot(n, o), u_pixel_texels);
+#if SURFACE == 0 && HAS_FLAKES && SINGLE_FLAKES
+  texel = surface_texel(p, n, u_frame.w);
+  lod = surface_lod(distance_m, co, u_frame.z);
 #endif
-  sum += paint_light(u_light_dir[0], u_light[0], n, o, texel, lod, FLAKE_LIGHTS > 0 ? 1.0 : 0.0);
+  vec3 sum = vec3(0.0);
+#if PATH == 1
+  vec3 towards_r = room_direction(p, r);
+  vec3 towards_n = room_direction(p, n);
+  float seen = visible(r);
+#if HAS_DIFFUSE
+#if HAS_IRRADIANCE
+  sum += filtered_diffuse(co, v_irradiance * u_gain);
+#else
+  sum += filtered_diffuse(co, environment_stacked(towards_n, 9.0));
+#endif
+#endif
+  vec3 shine = filtered_lobes(co, towards_n, towards_r);
+#if FLOOR_MIRROR
+  // What the car hides of the room is in its mirror image already.
+  // Nine taps around the mirror image: a polished floor spreads it by some degrees.
+  vec2 at = gl_FragCoord.xy * u_mirror_step.xy;
+  vec2 s = u_mirror_step.zw;
+  vec4 image = texture2D(u_mirror, at) * 0.2;
+  image += (texture2D(u_mirror, at + vec2(s.x, 0.0)) + texture2D(u_mirror, at - vec2(s.x, 0.0)) +
+            texture2D(u_mirror, at + vec2(0.0, s.y)) + texture2D(u_mirror, at - vec2(0.0, s.y))) * 0.12;
+  image += (texture2D(u_mirror, at + s) + texture2D(u_mirror, at - s) + texture2D(u_mirror, at + vec2(s.x, -s.y)) +
+            texture2D(u_mirror, at + vec2(-s.x, s.y))) * 0.08;
+  vec3 coded = image.xyz * image.xyz;
+  vec3 a = fetch_albedo(co, 1.0).xyz;
+  vec3 mirrored = coded / max(vec3(1.0) - coded, vec3(0.02)) * (a * a * u_albedo_scale.x) / u_frame.x;
+  shine = mix(shine, mirrored, image.w);
+#else
+  shine *= seen;
+#endif
+  sum += shine;
+#if HAS_COAT
+  sum += environment_sharp(towards_r) * (fresnel_dielectric(co, u_coat_ior) * seen);
+#endif
+#endif
+#if PATH == 2
+  sum += sampled_environment(p, n, o, texel, lod);
+#if HAS_COAT
+  sum += environment_sharp(room_direction(p, r)) * (fresnel_dielectric(co, u_coat_ior) * visible(r));
+#endif
+#endif
+#if PATH == 3 && HAS_COAT
+  sum += environment_sharp(room_direction(p, r)) * (fresnel_dielectric(co, u_coat_ior) * visible(r));
+#endif
+#if SPARKLE_LIGHTS > 0
+  vec3 glints = sparkle(u_sparkle_at[0], u_sparkle[0], p, n, o, texel, lod);
+#if SPARKLE_LIGHTS > 1
+  glints += sparkle(u_sparkle_at[1], u_sparkle[1], p, n, o, texel, lod);
+#endif
+#if SPARKLE_LIGHTS > 2
+  glints += sparkle(u_sparkle_at[2], u_sparkle[2], p, n, o, texel, lod);
+#endif
+#if SPARKLE_LIGHTS > 3
+  glints += sparkle(u_sparkle_at[3], u_sparkle[3], p, n, o, texel, lod);
+#endif
+  sum = max(sum + glints, vec3(0.0));
+#endif
+#if NUM_LIGHTS > 0
+  sum += light_on_paint(u_light_dir[0], u_light[0], n, o, texel, lod, FLAKE_LIGHTS > 0 ? 1.0 : 0.0);
 #if NUM_LIGHTS > 1
-  sum += paint_light(u_light_dir[1], u_light[1], n, o, texel, lod, FLAKE_LIGHTS > 1 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_dir[1], u_light[1], n, o, texel, lod, FLAKE_LIGHTS > 1 ? 1.0 : 0.0);
 #endif
 #if NUM_LIGHTS > 2
-  sum += paint_light(u_light_dir[2], u_light[2], n, o, texel, lod, FLAKE_LIGHTS > 2 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_dir[2], u_light[2], n, o, texel, lod, FLAKE_LIGHTS > 2 ? 1.0 : 0.0);
 #endif
 #if NUM_LIGHTS > 3
-  sum += paint_light(u_light_dir[3], u_light[3], n, o, texel, lod, FLAKE_LIGHTS > 3 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_dir[3], u_light[3], n, o, texel, lod, FLAKE_LIGHTS > 3 ? 1.0 : 0.0);
 #endif
-  sum *= open;
 #endif
-#if STUDIO
-  sum += paint_environment(n, o, p, open) + coat_mirror(n, o, p) * (0.25 + 0.75 * open);
+#if SURFACE == 6 || SURFACE == 7
+  sum += u_emission;
 #endif
+#if SURFACE == 1
+#if HAS_COAT
+  float f = fresnel_dielectric(co, u_coat_ior);
+#else
+  float f = 0.0;
+#endif
+  return vec4(sum, u_cover + (1.0 - u_cover) * f);
+#elif SURFACE == 9
+  // Polished dark concrete in a pool of light, fading into the hall.
+  return vec4(mix(sum, u_backdrop.xyz / u_frame.x, smoothstep(2.8, 6.7, length(p.xy))), 1.0);
+#else
   return vec4(sum, 1.0);
 #endif
-#elif SURFACE == 1  // glass: dark tint, dielectric mirror
-  float f = fresnel_dielectric(max(dot(n, o), 0.0), 1.52);
-  vec3 body = vec3(0.010, 0.012, 0.013) * (studio_radiance(p, n, 1.2) + lamps(n));
-  float cover = 0.80 + 0.20 * f;
-  return vec4(body * (1.0 - f) + studio_radiance(p, r, 0.0) * (f * open) + 0.04 * lamps_gloss(n, o, 60.0), cover);
-#elif SURFACE == 2  // chrome
-  return vec4(vec3(0.62, 0.63, 0.65) * studio_radiance(p, r, 0.03) * (0.3 + 0.7 * open) +
-                  0.25 * lamps_gloss(n, o, 20.0), 1.0);
-#elif SURFACE == 3  // rubber
-  return vec4(vec3(0.018) * (studio_radiance(p, n, 1.2) + lamps(n)) * open +
-                  studio_radiance(p, r, 0.7) * (0.35 * gloss_fresnel(n, o, 0.03) * open * open), 1.0);
-#elif SURFACE == 4  // black plastic
-  return vec4(vec3(0.012) * (studio_radiance(p, n, 1.2) + lamps(n)) * open +
-                  studio_radiance(p, r, 0.18) * (gloss_fresnel(n, o, 0.04) * 0.8 * open * open), 1.0);
-#elif SURFACE == 5  // rims: satin metal
-  return vec4((vec3(0.34, 0.345, 0.355) * studio_radiance(p, r, 0.22) + vec3(0.05) * studio_radiance(p, n, 1.2) +
-               vec3(0.10) * lamps_gloss(n, o, 6.0)) * (0.15 + 0.85 * open), 1.0);
-#elif SURFACE == 6  // clear lamps: a bright inside behind a smooth lens
-  float f6 = fresnel_dielectric(max(dot(n, o), 0.0), 1.5);
-  return vec4(vec3(0.92, 0.97, 1.05) * u_lamp_glow + vec3(0.16) * studio_radiance(p, r, 0.25) +
-                  studio_radiance(p, r, 0.0) * f6, 1.0);
-#elif SURFACE == 7  // tail lamps
-  float f7 = fresnel_dielectric(max(dot(n, o), 0.0), 1.5);
-  return vec4(vec3(0.75, 0.012, 0.010) * u_lamp_glow + vec3(0.10, 0.004, 0.004) * studio_radiance(p, r, 0.3) +
-                  studio_radiance(p, r, 0.0) * f7, 1.0);
-#elif SURFACE == 8  // interior
-  return vec4(vec3(0.02) * (studio_radiance(p, n, 1.2) + lamps(n)) * open, 1.0);
-#else  // floor: polished dark concrete in a pool of light, fading into the hall
-  float radius = length(p.xy);
-  vec3 matt = vec3(0.115, 0.114, 0.112) * (studio_radiance(p + vec3(0.0, 0.0, 5.0), n, 1.2) + 0.6 * lamps(n));
-  float ff = gloss_fresnel(n, o, 0.04);
-  vec3 shine = studio_radiance(p + vec3(0.0, 0.0, 5.0), r, 0.16) * (ff * 0.55);
-  vec3 lit = (matt * open * open + shine * open) * u_exposure;
-  float fade = smoothstep(2800.0, 6700.0, radius);
-  return vec4(mix(lit, u_backdrop, fade) / u_exposure, 1.0);
 #endif
 }
 
 void main() {
-  vec3 to_eye = u_eye - v_position;
-  float distance_mm = length(to_eye);
-  vec3 o = to_eye / distance_mm;
+  float distance_m = length(v_to_eye);
+  vec3 o = v_to_eye / distance_m;
   vec3 n = normalize(v_normal);
   // Interpolated normals may turn away at silhouettes: bend them back to just facing the eye.
   float co = dot(n, o);
   if (co < 0.0) n = normalize(n + o * (0.001 - co));
-  vec4 c = shade(n, o, v_position, v_open, distance_mm);
-  vec3 shown = display_transform(c.xyz * u_exposure);
-  shown += vec3(u_dither * dither_noise(gl_FragCoord.x, gl_FragCoord.y));
+  vec4 c = shade(n, o, v_position, distance_m);
+  vec3 lit = c.xyz * u_frame.x;
+#if OUTPUT == 0
+  vec3 shown = display_transform(min(lit, vec3(8000.0)));  // white for long; the tone curve needs some room above
+  shown += vec3(u_frame.y * dither_noise(gl_FragCoord.x, gl_FragCoord.y));
   gl_FragColor = vec4(shown, c.w);
+#elif OUTPUT == 3
+  gl_FragColor = vec4(vec3(SURFACE == 9 ? 0.0 : 1.0), 1.0);
+#elif OUTPUT == 1
+  gl_FragColor = vec4(min(lit, vec3(60000.0)), c.w);  // 65504 is the largest half float
+#else
+  // From below one looks into the open underside: what is seen from its back there is dark, not a hole to the sky.
+  gl_FragColor = vec4(gl_FrontFacing ? sqrt(lit / (lit + vec3(1.0))) : vec3(0.0), 1.0);
+#endif
 }

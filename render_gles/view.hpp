@@ -45,17 +45,38 @@ enum class FlakeMode {
   bilinear,  ///< single flakes blended between the four slices around
 };
 
+/// Where the environment's light comes from in a moving picture.
+enum class LightPath {
+  none,      ///< the environment is switched off
+  filtered,  ///< prefiltered levels per lobe, baked irradiance, single flakes of a few lights
+  lights,    ///< directional lights cut from the environment with the full model, and its mirror image in the coat
+};
+
+/// How a moving picture is drawn: what the governor chooses. A still picture always takes the best of each.
+struct Quality {
+  LightPath path = LightPath::filtered;
+  int cut_lights = 4;  ///< of LightPath::lights: 1, 4, 16 or 64
+  FlakeMode flakes = FlakeMode::bilinear;
+  bool flake_cross_fade = true;   ///< between angle cells; else flakes switch on and off in steps
+  int flake_lights = max_lights;  ///< how many directional lights show single flakes; the rest show the mean
+  bool one_lobe = false;          ///< all lobes and the mean flakes as one lobe, where no single flakes show
+  int sparkle_lights = 1;    ///< how many lights of the environment show single flakes on the filtered path, [0, 4]
+  bool floor_mirror = true;  ///< the car's image in the floor
+  bool coarse = false;       ///< the scene's coarse detail level
+  bool smooth_edges = true;  ///< a pass over the finished picture
+  float scale = 1.0f;        ///< resolution of the moving picture over that of the screen, [0.25, 1]
+  bool operator==(const Quality&) const = default;
+};
+
 struct Lighting {
-  std::vector<DirectionalLight> lights;       ///< at most max_lights
+  std::vector<DirectionalLight> lights;       ///< of the mood, besides the environment; at most max_lights
   float exposure = 1.0f;                      ///< scene-linear to display-linear, > 0
-  bool studio = true;                         ///< soft boxes and their reflections
-  float studio_gain = 1.0f;                   ///< brightness of the studio, >= 0
+  float environment_gain = 1.0f;              ///< brightness of the environment, >= 0
   float lamp_glow = 0.0f;                     ///< radiance of the car's own lamps when switched on
   glm::vec3 backdrop{0.02f, 0.021f, 0.023f};  ///< linear sRGB after exposure; where the floor fades to
   bool stripes = false;                       ///< body designer's stripe reflections instead of paint
-  FlakeMode flakes = FlakeMode::bilinear;
-  int flake_lights = max_lights;  ///< how many lights show single flakes; the rest show the mean
-  bool dither = true;             ///< half a step of noise against banding
+  bool dither = true;                         ///< half a step of noise against banding
+  Quality quality;
   bool operator==(const Lighting&) const = default;
 };
 

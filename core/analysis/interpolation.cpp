@@ -260,7 +260,8 @@ Result<InterpolatableData> build_interpolatable(const std::vector<ClusteredPaint
                [&](std::size_t row) { rows[row] = build_row(paints, row, data.range, data.row_mass); });
 
   data.tuple_begin.push_back(0);
-  for (const ClusteredPaint& paint : paints) data.parts.push_back({paint.identity, paint.analytic, {0}, {}, {}});
+  for (const ClusteredPaint& paint : paints)
+    data.parts.push_back({paint.identity, paint.analytic, {0}, {}, {}, paint.life});
   for (std::size_t index = 0; index < row_count; ++index) {
     if (!*rows[index]) {
       Error error = rows[index]->error();
@@ -283,7 +284,8 @@ Result<InterpolatableData> build_interpolatable(const std::vector<ClusteredPaint
 InterpolatablePaint InterpolatableData::view() const {
   InterpolatablePaint paint;
   for (const Part& part : parts)
-    paint.paints.push_back({part.identity, part.analytic, part.cluster_begin, part.clusters, part.tuple_cluster});
+    paint.paints.push_back(
+        {part.identity, part.analytic, part.cluster_begin, part.clusters, part.tuple_cluster, part.life});
   paint.layout = frame.layout;
   paint.level_count = frame.level_count;
   paint.texel_mm = frame.texel_mm;

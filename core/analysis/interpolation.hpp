@@ -21,6 +21,7 @@ struct ClusteredPaint {
   PaintIdentity identity;
   AnalyticPaint analytic;
   std::vector<std::vector<LabCuboid>> rows;  ///< Lab of pi * Xi under D65; counts are texels, >= 1
+  FlakeLife life;
 };
 
 /// What all paints of a pack share.
@@ -40,6 +41,7 @@ struct InterpolatableData {
     std::vector<std::uint32_t> cluster_begin;
     std::vector<QuantisedCuboid> clusters;
     std::vector<std::uint8_t> tuple_cluster;
+    FlakeLife life;
   };
   std::vector<Part> parts;
   FlakeFrame frame;

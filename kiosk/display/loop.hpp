@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "core/error.hpp"
 #include "kiosk/display/options.hpp"
@@ -14,6 +15,8 @@ namespace lackwerk::kiosk {
 struct RunSummary {
   std::uint64_t frames = 0;          ///< times the loop went round
   std::uint64_t drawn = 0;           ///< frames that were drawn, because something had changed
+  std::uint64_t refined = 0;         ///< frames that improved a picture that did not change
+  std::string quality;               ///< the rung moving pictures were last drawn on
   std::uint64_t uploaded_bytes = 0;  ///< paint textures sent
   double drawn_ms_median = 0.0;      ///< realise + upload + draw + finish, of the drawn frames
   double realise_ms_median = 0.0;    ///< realise + upload, of the frames whose weights had changed

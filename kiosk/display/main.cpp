@@ -28,10 +28,12 @@ int run(int argc, char** argv) {
   std::signal(SIGTERM, on_signal);
   const auto summary = lackwerk::kiosk::run(*options);
   if (!summary) return report(summary.error());
-  std::printf("%llu frames, %llu drawn; median %.1f ms a drawn frame (realise and upload %.2f ms); %.2f MB uploaded\n",
-              static_cast<unsigned long long>(summary->frames), static_cast<unsigned long long>(summary->drawn),
-              summary->drawn_ms_median, summary->realise_ms_median,
-              static_cast<double>(summary->uploaded_bytes) * 1e-6);
+  std::printf(
+      "%llu frames, %llu drawn, %llu refined; quality %s; median %.1f ms a drawn frame (realise and upload %.2f "
+      "ms); %.2f MB uploaded\n",
+      static_cast<unsigned long long>(summary->frames), static_cast<unsigned long long>(summary->drawn),
+      static_cast<unsigned long long>(summary->refined), summary->quality.c_str(), summary->drawn_ms_median,
+      summary->realise_ms_median, static_cast<double>(summary->uploaded_bytes) * 1e-6);
   return exit_done;
 }
 

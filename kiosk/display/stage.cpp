@@ -17,12 +17,12 @@ bool read_edge(const char*& at, const char* end, int& edge) {
 }  // namespace
 
 Result<std::unique_ptr<Stage>> Stage::create(gles::Backend backend, int width, int height, packs::PaintPack pack,
-                                             packs::Scene scene) {
+                                             packs::Scene scene, const gles::ContextSettings& settings) {
   if (scene.cameras.empty())
     return fail(scene.name, "cameras", "the scene has no camera", "rebuild it with 'lackwerk scene build'");
   // The constructor is private, so make_unique cannot be used.
   std::unique_ptr<Stage> stage(new Stage(std::move(pack), std::move(scene)));
-  auto context = gles::create_context(backend);
+  auto context = gles::create_context(backend, settings);
   if (!context) return tl::unexpected(context.error());
   stage->context_ = std::move(*context);
   auto framebuffer = gles::Framebuffer::create(*stage->context_, width, height);

@@ -21,7 +21,8 @@ class Stage {
  public:
   /// `width`, `height` in pixels, [16, 8192]. Errors: backend, framebuffer or paint refused by the driver.
   [[nodiscard]] static Result<std::unique_ptr<Stage>> create(gles::Backend backend, int width, int height,
-                                                             packs::PaintPack pack, packs::Scene scene);
+                                                             packs::PaintPack pack, packs::Scene scene,
+                                                             const gles::ContextSettings& settings = {});
 
   [[nodiscard]] const packs::PaintPack& pack() const { return pack_; }
   [[nodiscard]] const packs::Scene& scene() const { return scene_; }

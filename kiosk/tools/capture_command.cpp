@@ -1,17 +1,13 @@
-#include <unistd.h>
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <thread>
-#include <vector>
 
 #include "kiosk/tools/commands.hpp"
+#include "kiosk/tools/find_recipe.hpp"
 #include "kiosk/tools/output.hpp"
 #include "kiosk/tools/progress.hpp"
 #include "packs/tools/virtual_goniometer.hpp"
@@ -19,38 +15,11 @@
 namespace lackwerk::tools {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct CaptureOptions {
   std::string recipe, out;
   packs::GoniometerSettings settings;
   bool json = false;
 };
-
-/// Folders that may hold the recipes that come with the program: the installed one, then a source tree around the
-/// program or the working folder.
-std::vector<fs::path> recipe_folders() {
-  std::vector<fs::path> out;
-  std::error_code code;
-  const fs::path program = fs::read_symlink("/proc/self/exe", code);
-  if (!code) out.push_back(program.parent_path().parent_path() / "share" / "lackwerk" / "recipes");
-  for (fs::path start : {program.parent_path(), fs::current_path(code)})
-    for (; !start.empty(); start = start.parent_path()) {
-      out.push_back(start / "packs" / "recipes");
-      if (start == start.root_path()) break;
-    }
-  return out;
-}
-
-/// A path as it stands, or a bare name found among the recipes that come with the program.
-fs::path find_recipe(const std::string& name) {
-  std::error_code code;
-  if (fs::exists(name, code) || fs::path(name).has_parent_path()) return name;
-  for (const fs::path& folder : recipe_folders())
-    for (const char* ending : {"", ".toml"})
-      if (fs::path found = folder / (name + ending); fs::is_regular_file(found, code)) return found;
-  return name;
-}
 
 int run_capture(const CaptureOptions& options) {
   const auto recipe = packs::read_recipe(find_recipe(options.recipe));

@@ -19,6 +19,7 @@ void add_scene_command(CLI::App& app, int& exit_code);        ///< scene build: 
 void add_render_command(CLI::App& app, int& exit_code);       ///< render: a picture of a mix
 void add_look_command(CLI::App& app, int& exit_code);         ///< look: the contact sheet of docs/look
 void add_compare_command(CLI::App& app, int& exit_code);      ///< compare: CIEDE2000 of two pictures
+void add_flake_life_command(CLI::App& app, int& exit_code);   ///< flake-life: how fast flakes twinkle
 
 /// The subcommand group `name` ("pack", "scene") of `app`, made on first use.
 [[nodiscard]] CLI::App& command_group(CLI::App& app, const char* name, const char* description);

@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   add_render_command(app, exit_code);
   add_look_command(app, exit_code);
   add_compare_command(app, exit_code);
+  add_flake_life_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

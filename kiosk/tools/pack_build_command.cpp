@@ -24,6 +24,8 @@ void print_json(const packs::BuiltPack& built, const packs::PackContents& conten
                              {"serial", built.info.serial},
                              {"seconds", seconds},
                              {"transport_cost_lab", built.info.transport_cost},
+                             {"captured_slices", built.captured_slices},
+                             {"slices", built.data.frame.layout.slice_count()},
                              {"paints", nlohmann::json::array()}};
   for (std::size_t k = 0; k < built.data.parts.size(); ++k)
     out["paints"].push_back({{"name", built.data.parts[k].identity.name},
@@ -50,6 +52,10 @@ int run_build(const BuildOptions& options) {
     print(one_line(contents.paint.paints[k].identity.name) + ": " +
           fixed(static_cast<double>(packs::paint_bytes(contents.paint, k)) / 1e6, 2) + " MB, mean flake W1 " +
           fixed(static_cast<double>(built->info.errors[k].flake_w1_mean), 3) + " Lab");
+  const int kept = built->data.frame.layout.slice_count();
+  if (kept < built->captured_slices)
+    print("left out: " + std::to_string(built->captured_slices - kept) + " of " +
+          std::to_string(built->captured_slices) + " slices: no light reaches their angles below the coat");
   std::error_code code;
   const auto bytes = std::filesystem::file_size(options.out, code);
   print(options.out + ": " + fixed(code ? 0.0 : static_cast<double>(bytes) / 1e6, 2) + " MB in " + fixed(seconds, 1) +
@@ -76,6 +82,8 @@ void add_pack_build_command(CLI::App& app, int& exit_code) {
   command->add_option("--threads", settings.threads, "0 = as many as the machine has; no effect on the result")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
+  command->add_flag("--all-slices", settings.keep_all_slices,
+                    "keep slices whose angles no light reaches below the paints' coats");
   command->add_flag("--json", options->json, "print JSON");
   command->callback([options, &exit_code] {
     if (options->settings.id.empty()) options->settings.id = std::filesystem::path(options->out).stem().string();

@@ -16,6 +16,33 @@ struct InfoOptions {
   bool json = false;
 };
 
+/// How the widths of the random cells were found.
+const char* life_origin(const core::FlakeLife& life) {
+  switch (life.origin) {
+    case core::LifeOrigin::fine:
+      return "measured at fine angle steps";
+    case core::LifeOrigin::slices:
+      return "from neighbouring slices";
+    case core::LifeOrigin::assumed:
+      break;
+  }
+  return "assumed for a life of 6.5 degrees: not measured";
+}
+
+nlohmann::ordered_json life_json(const core::FlakeLife& life) {
+  return {{"cell_theta_h_deg", life.cell_h_deg}, {"cell_theta_i_deg", life.cell_i_deg}, {"origin", life_origin(life)}};
+}
+
+/// "random cells 6.5 degrees of theta_h, one for all theta_i (assumed: ...)".
+std::string life_text(const core::FlakeLife& life) {
+  const auto width = [](float deg, const char* angle) {
+    return deg < core::widest_cell_deg ? fixed(static_cast<double>(deg), 2) + " degrees of " + angle
+                                       : std::string("one for all ") + angle;
+  };
+  return "random cells " + width(life.cell_h_deg, "theta_h") + ", " + width(life.cell_i_deg, "theta_i") + " (" +
+         life_origin(life) + ")";
+}
+
 nlohmann::ordered_json paint_json(const packs::PaintPack& pack, std::size_t k) {
   const core::PaintIdentity& identity = pack.paint().paints[k].identity;
   const packs::PaintError& error = pack.info().errors[k];
@@ -29,6 +56,7 @@ nlohmann::ordered_json paint_json(const packs::PaintPack& pack, std::size_t k) {
            {{"flake_w1_mean_lab", error.flake_w1_mean},
             {"flake_w1_max_lab", error.flake_w1_max},
             {"flake_w1_slice_lab", error.flake_w1_slice}}},
+          {"flake_life", life_json(pack.paint().paints[k].life)},
           {"clusters", pack.paint().paints[k].clusters.size()},
           {"bytes", packs::paint_bytes(pack.paint(), k)}};
 }
@@ -68,6 +96,7 @@ void print_text(const packs::PaintPack& pack) {
           fixed(static_cast<double>(info.errors[k].flake_w1_max), 2) + " Lab; lobes " +
           core::provenance_name(identity.lobes) + ", flakes " + core::provenance_name(identity.flakes) + ", coat " +
           core::provenance_name(identity.coat) + "; " + identity.source);
+    if (paint.layout.slice_count() > 0) print("    " + life_text(paint.paints[k].life));
   }
 }
 

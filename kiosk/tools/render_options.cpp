@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/analysis/studio.hpp"
 #include "packs/scene_pack.hpp"
 #include "packs/tools/car/builtin_car.hpp"
-#include "packs/tools/scene_occlusion.hpp"
+#include "packs/tools/scene_bake.hpp"
 
 namespace lackwerk::tools {
 namespace {
 
 /// Rays per vertex when a scene is built on the fly: a quick look, a scene pack has more.
-constexpr int quick_rays = 24;
+constexpr int quick_rays = 48;
 constexpr float sphere_radius_mm = 300.0f;
 constexpr float capsule_radius_mm = 75.0f;
 constexpr float capsule_length_mm = 400.0f;
@@ -49,7 +50,8 @@ Result<packs::Scene> load_scene(const std::string& name) {
     scene = packs::build_capsule(capsule_radius_mm, capsule_length_mm);
   else
     return packs::read_scene_pack(name);
-  packs::bake_ambient_occlusion(scene, quick_rays);
+  scene.environment = core::build_studio();
+  packs::bake_scene(scene, {.rays_per_vertex = quick_rays});
   return scene;
 }
 

@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/error.hpp"
@@ -23,6 +24,14 @@ struct FlakeSlice {
   std::vector<glm::vec3> texels;
 };
 
+/// How long flakes shine: half widths of the texels' autocorrelation (core/analysis/angular_life.hpp), measured at
+/// angle steps much finer than the slices'. 90: it does not fall to 1/2.
+struct MeasuredLife {
+  double half_h_deg = 0.0;  ///< along theta_h, (0, 90]
+  double half_i_deg = 0.0;  ///< along theta_i
+  bool operator==(const MeasuredLife&) const = default;
+};
+
 struct Capture {
   core::PaintIdentity identity;
   core::AnalyticPaint analytic;
@@ -30,6 +39,7 @@ struct Capture {
   std::uint32_t edge_texels = 0;   ///< per slice edge, [1, 4096]
   float texel_mm = 0.0f;           ///< edge of one texel on the paint, > 0
   std::vector<FlakeSlice> slices;  ///< layout.slice_count() of them
+  std::optional<MeasuredLife> life;
 };
 
 /// Reads a capture folder. Errors name file and field: missing or truncated images, wrong sizes, NaN or negative

@@ -24,6 +24,7 @@ constexpr int max_table = 256;
 constexpr std::uint64_t max_texels = 1u << 27;  ///< of all slices together: 1.6 GB, nine times a real capture
 constexpr double max_weight = 1e3;
 constexpr float max_half = 65504.0f;
+constexpr double least_life_deg = 0.1;
 constexpr int image_threads = 2;
 
 std::string slice_name(int slice) {
@@ -86,6 +87,10 @@ Result<void> check_shape(const Capture& capture, const std::string& file) {
   for (std::size_t row = 0; row + 1 < layout.lut.size(); ++row) {
     if (layout.lut[row + 1] >= layout.lut[row] && layout.lut[row + 1] - layout.lut[row] <= layout.num_theta) continue;
     return fail(file, "thetaFI_sliceLUT", "does not rise by 0 to num_thetaF per row", "export it unchanged");
+  }
+  if (capture.life) {
+    for (const double half : {capture.life->half_h_deg, capture.life->half_i_deg})
+      if (!in(half, least_life_deg, 90.0)) return fail(file, "life_theta_h_deg", "is out of range", "give [0.1, 90]");
   }
   const std::uint64_t texels = std::uint64_t{capture.edge_texels} * capture.edge_texels;
   if (capture.edge_texels < 1 || capture.edge_texels > max_edge ||
@@ -245,6 +250,9 @@ std::string paint_toml(const Capture& capture) {
       << "\ntexel_mm = " << number_text(capture.texel_mm) << "\nnum_thetaF = " << capture.layout.num_theta
       << "\nnum_thetaI = " << capture.layout.num_theta << "\nmax_thetaI = " << capture.layout.rows()
       << "\nthetaFI_sliceLUT = " << list_text(lut) << "\n";
+  if (capture.life)
+    out << "life_theta_h_deg = " << number_text(capture.life->half_h_deg)
+        << "\nlife_theta_i_deg = " << number_text(capture.life->half_i_deg) << "\n";
   return out.str();
 }
 
@@ -281,6 +289,9 @@ void read_layout(Fields& fields, Capture& capture) {
     capture.layout.lut.push_back(static_cast<std::uint16_t>(entry));
   }
   if (capture.layout.rows() != max_i) fields.wrong("max_thetaI", "is not the number of rows of thetaFI_sliceLUT", "");
+  if (fields.has("life_theta_h_deg") || fields.has("life_theta_i_deg"))
+    capture.life = MeasuredLife{fields.number("life_theta_h_deg", least_life_deg, 90.0),
+                                fields.number("life_theta_i_deg", least_life_deg, 90.0)};
   if (capture.layout.slice_count() == 0) fields.wrong("thetaFI_sliceLUT", "has no slices", "leave [flakes] out");
 }
 
@@ -314,8 +325,9 @@ Result<PaintFile> read_paint_file(const std::filesystem::path& file) {
   } else {
     fields.wrong("provenance", "is missing", "say where lobes, flakes and coat came from");
   }
-  if (auto flakes = fields.table("flakes", {"BTFflakes", "edge_texels", "texel_mm", "num_thetaF", "num_thetaI",
-                                            "max_thetaI", "thetaFI_sliceLUT"})) {
+  if (auto flakes =
+          fields.table("flakes", {"BTFflakes", "edge_texels", "texel_mm", "num_thetaF", "num_thetaI", "max_thetaI",
+                                  "thetaFI_sliceLUT", "life_theta_h_deg", "life_theta_i_deg"})) {
     read_layout(*flakes, out.capture);
   }
   if (first.error) return tl::unexpected(*first.error);

@@ -78,22 +78,38 @@ Result<LinearImage> read_image(const std::filesystem::path& path) {
   return out;
 }
 
-Result<ImageDifference> compare_images(const LinearImage& a, const LinearImage& b, std::vector<float>* map) {
+PixelMask mask_of(const LinearImage& image) {
+  static const auto half = static_cast<float>(core::srgb_decode(0.5));
+  PixelMask mask(image.pixels.size());
+  std::transform(image.pixels.begin(), image.pixels.end(), mask.begin(),
+                 [](const glm::vec3& pixel) { return static_cast<std::uint8_t>(pixel.y > half ? 1 : 0); });
+  return mask;
+}
+
+Result<ImageDifference> compare_images(const LinearImage& a, const LinearImage& b, std::vector<float>* map,
+                                       const PixelMask& mask) {
   if (a.width != b.width || a.height != b.height || a.pixels.size() != b.pixels.size())
     return fail("", "size", size_text(a.width, a.height) + " and " + size_text(b.width, b.height),
                 "compare pictures of one size", ErrorKind::run);
   if (a.pixels.empty()) return fail("", "size", "the pictures are empty", "compare real pictures");
-  std::vector<float> difference(a.pixels.size());
+  if (!mask.empty() && mask.size() != a.pixels.size())
+    return fail("", "mask", std::to_string(mask.size()) + " pixels for pictures of " + std::to_string(a.pixels.size()),
+                "give a mask of the pictures' size");
+  std::vector<float> difference;
+  difference.reserve(a.pixels.size());
+  if (map != nullptr) map->assign(a.pixels.size(), -1.0f);
   double sum = 0.0;
-  for (std::size_t k = 0; k < difference.size(); ++k) {
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    if (!mask.empty() && mask[k] == 0) continue;
     // Equal pixels are common in golden comparisons, and CIEDE2000 is slow.
-    if (a.pixels[k] == b.pixels[k]) continue;
-    const double d =
-        core::ciede2000(core::lab_from_linear(glm::dvec3(a.pixels[k])), core::lab_from_linear(glm::dvec3(b.pixels[k])));
-    difference[k] = static_cast<float>(d);
+    const double d = a.pixels[k] == b.pixels[k] ? 0.0
+                                                : core::ciede2000(core::lab_from_linear(glm::dvec3(a.pixels[k])),
+                                                                  core::lab_from_linear(glm::dvec3(b.pixels[k])));
+    difference.push_back(static_cast<float>(d));
+    if (map != nullptr) (*map)[k] = difference.back();
     sum += d;
   }
-  if (map != nullptr) *map = difference;
+  if (difference.empty()) return fail("", "mask", "counts no pixel", "paint white what is to count");
   const std::size_t n = difference.size();
   const auto percentile = [&](std::size_t percent) {
     const std::size_t rank = (n * percent + 99) / 100;  // nearest rank, counted from 1
@@ -108,23 +124,6 @@ Result<ImageDifference> compare_images(const LinearImage& a, const LinearImage& 
   out.p99 = percentile(99);
   out.max = percentile(100);
   return out;
-}
-
-Result<void> write_difference_map(const std::filesystem::path& path, int width, int height,
-                                  const std::vector<float>& map) {
-  const std::string file = path.string();
-  std::vector<std::uint8_t> grey(map.size());
-  for (std::size_t k = 0; k < map.size(); ++k)
-    grey[k] = static_cast<std::uint8_t>(std::lround(std::min(map[k] / map_white_difference, 1.0f) * 255.0f));
-  const auto output = OIIO::ImageOutput::create(file);
-  const OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
-  if (!output) {
-    (void)OIIO::geterror();  // OpenImageIO prints unread errors at exit
-    return fail(file, "", "cannot be written: unknown format", "give the map a name that ends in .png");
-  }
-  if (!output->open(file, spec) || !output->write_image(OIIO::TypeDesc::UINT8, grey.data()) || !output->close())
-    return fail(file, "", "cannot be written: " + output->geterror(), "check the folder and free space");
-  return {};
 }
 
 }  // namespace lackwerk::packs

@@ -1,10 +1,11 @@
 // How different two pictures are: CIEDE2000, pixel by pixel.
 //
 // Why it exists: golden images, the error report and `lackwerk compare` must judge pictures by the same numbers. Values
-// and pure functions; any thread. Files are only read, except by write_difference_map.
+// and pure functions; any thread. Files are only read.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -25,25 +26,24 @@ struct LinearImage {
 /// pixels, a data window that is not the picture, pixels that are not finite.
 [[nodiscard]] Result<LinearImage> read_image(const std::filesystem::path& path);
 
-/// CIEDE2000 over all pixels, Lab under D65 with linear (1, 1, 1) as white. Percentiles are nearest-rank.
+/// CIEDE2000 over the counted pixels, Lab under D65 with linear (1, 1, 1) as white. Percentiles are nearest-rank.
 struct ImageDifference {
-  std::size_t pixels = 0;
+  std::size_t pixels = 0;  ///< counted
   double mean = 0.0;
   double p95 = 0.0;
   double p99 = 0.0;
   double max = 0.0;
 };
 
-/// Compares two pictures of one size (another size is an Error naming both). `map`, if given, gets the difference of
-/// each pixel.
+/// Which pixels count, one byte a pixel, 0 = not; empty = all.
+using PixelMask = std::vector<std::uint8_t>;
+
+/// Pixels that are white rather than black: green above half of what a display can show.
+[[nodiscard]] PixelMask mask_of(const LinearImage& image);
+
+/// Compares two pictures of one size (another size, of the mask too, is an Error naming both; so is a mask that counts
+/// nothing). `map`, if given, gets the difference of each pixel, -1 where it does not count.
 [[nodiscard]] Result<ImageDifference> compare_images(const LinearImage& a, const LinearImage& b,
-                                                     std::vector<float>* map = nullptr);
-
-/// Difference that is white in a map file.
-inline constexpr float map_white_difference = 10.0f;
-
-/// Writes a map as an 8-bit grey picture: black 0, white map_white_difference and above.
-[[nodiscard]] Result<void> write_difference_map(const std::filesystem::path& path, int width, int height,
-                                                const std::vector<float>& map);
+                                                     std::vector<float>* map = nullptr, const PixelMask& mask = {});
 
 }  // namespace lackwerk::packs

@@ -23,6 +23,7 @@ struct PackBuildSettings {
   std::uint64_t serial = 1;       ///< see PackInfo::serial
   std::uint64_t random_seed = 1;  ///< of the random textures
   int threads = 0;                ///< [1, 64]; 0 = as many as the machine has
+  bool keep_all_slices = false;   ///< also those that no light can reach below the paints' coats
   core::ClusterSettings clusters;
 };
 
@@ -32,15 +33,16 @@ using PackProgress = std::function<void(double fraction, std::string_view stage)
 /// A pack in memory. contents() points into it: valid while it lives unchanged.
 struct BuiltPack {
   PackInfo info;
+  int captured_slices = 0;  ///< of each capture; the pack has data.frame.layout's
   core::InterpolatableData data;
   [[nodiscard]] PackContents contents() const { return {info, data.view()}; }
 };
 
 /// Builds from 1 to 5 captures. Captures with flakes must share layout, edge_texels and texel_mm; captures without mix
-/// with them as black flakes. Stored with each paint: upper bounds of the 1-Wasserstein distance (Lab) between level-0
-/// texels and their clusters, before the 16-bit grid (which moves corners by half a step of the range). Errors name
-/// the captures (by paint name) and the field that differs, or a slice of wrong size or with a texel that is not
-/// finite.
+/// with them as black flakes. Random cells are fitted to each capture's angular life (flake_life.hpp). Stored with each
+/// paint: upper bounds of the 1-Wasserstein distance (Lab) between level-0 texels and their clusters, before the 16-bit
+/// grid (which moves corners by half a step of the range). Errors name the captures (by paint name) and the field that
+/// differs, or a slice of wrong size or with a texel that is not finite.
 [[nodiscard]] Result<BuiltPack> build_pack(std::span<const Capture> captures, const PackBuildSettings& settings,
                                            const PackProgress& progress = {});
 

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "packs/tools/flake_life.hpp"
 #include "packs/tools/flake_population.hpp"
 #include "packs/tools/node_geometry.hpp"
 
@@ -179,7 +180,52 @@ Result<void> check_mirrors(const Recipe& recipe, const core::SliceLayout& layout
                   std::to_string(recipe.flakes->share / most));
 }
 
+/// The sample that these settings ask for.
+Result<FlakePopulation> make_sample(const Recipe& recipe, const GoniometerSettings& settings) {
+  const double edge_mm = static_cast<double>(settings.texel_mm) * settings.edge_texels;
+  const double count = std::round(expected_flakes(*recipe.flakes, edge_mm * edge_mm));
+  if (!(count >= 1.0 && count <= max_flakes)) {
+    return fail("", "flakes.coverage", "needs " + std::to_string(count) + " flakes on this sample",
+                "allowed are 1 to 30 million: change coverage, diameters or the sample's size");
+  }
+  return draw_flakes(*recipe.flakes, recipe.analytic.lobes[0].m, static_cast<std::size_t>(count), settings.edge_texels,
+                     settings.texel_mm, settings.seed);
+}
+
+/// One picture per pair of angles, shared among the threads.
+std::vector<FlakeSlice> photograph_all(const Recipe& recipe, const GoniometerSettings& settings,
+                                       const FlakePopulation& sample, std::span<const PictureAngles> angles,
+                                       const MeasureProgress& progress) {
+  std::vector<FlakeSlice> out(angles.size());
+  std::atomic<std::size_t> next{0};
+  int done = 0;
+  std::mutex reporting;
+  const auto work = [&] {
+    for (std::size_t k = next++; k < angles.size(); k = next++) {
+      const Shot shot = aim(recipe, sample, angles[k].theta_h, angles[k].theta_i, settings.source_radius_rad);
+      photograph(sample, shot, settings.even_out, settings.edge_texels, out[k]);
+      const std::scoped_lock lock(reporting);
+      ++done;
+      if (progress) progress(done, static_cast<int>(angles.size()));
+    }
+  };
+  std::vector<std::jthread> helpers;
+  for (int k = 1; k < settings.threads; ++k) helpers.emplace_back(work);
+  work();
+  helpers.clear();  // joins
+  return out;
+}
+
 }  // namespace
+
+Result<std::vector<FlakeSlice>> photographs(const Recipe& recipe, const GoniometerSettings& settings,
+                                            std::span<const PictureAngles> angles) {
+  if (auto ok = check_settings(settings); !ok) return tl::unexpected(ok.error());
+  if (!recipe.flakes) return fail("", "flakes", "the recipe has none", "there is nothing to photograph");
+  const auto sample = make_sample(recipe, settings);
+  if (!sample) return tl::unexpected(sample.error());
+  return photograph_all(recipe, settings, *sample, angles, {});
+}
 
 Result<Capture> measure(const Recipe& recipe, const GoniometerSettings& settings, const MeasureProgress& progress) {
   if (auto ok = check_settings(settings); !ok) return tl::unexpected(ok.error());
@@ -188,42 +234,23 @@ Result<Capture> measure(const Recipe& recipe, const GoniometerSettings& settings
   capture.analytic = recipe.analytic;
   if (!recipe.flakes) return capture;
 
-  const double edge_mm = static_cast<double>(settings.texel_mm) * settings.edge_texels;
-  const double count = std::round(expected_flakes(*recipe.flakes, edge_mm * edge_mm));
-  if (!(count >= 1.0 && count <= max_flakes)) {
-    return fail("", "flakes.coverage", "needs " + std::to_string(count) + " flakes on this sample",
-                "allowed are 1 to 30 million: change coverage, diameters or the sample's size");
-  }
+  const auto sample = make_sample(recipe, settings);
+  if (!sample) return tl::unexpected(sample.error());
   capture.layout = core::axf_layout();
   capture.edge_texels = settings.edge_texels;
   capture.texel_mm = settings.texel_mm;
-  const int total = capture.layout.slice_count();
-  const FlakePopulation sample =
-      draw_flakes(*recipe.flakes, recipe.analytic.lobes[0].m, static_cast<std::size_t>(count), settings.edge_texels,
-                  settings.texel_mm, settings.seed);
-  if (auto ok = check_mirrors(recipe, capture.layout, sample.coverage); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check_mirrors(recipe, capture.layout, sample->coverage); !ok) return tl::unexpected(ok.error());
 
-  capture.slices.resize(static_cast<std::size_t>(total));
-  std::atomic<int> next{0};
-  int done = 0;
-  std::mutex reporting;
-  const auto work = [&] {
-    for (int slice = next++; slice < total; slice = next++) {
-      const auto node = capture.layout.node_of(slice);
-      const double width = capture.layout.bin_width_rad();
-      const Shot shot = aim(recipe, sample, node.bin_h * width, node.bin_i * width, settings.source_radius_rad);
-      photograph(sample, shot, settings.even_out, settings.edge_texels,
-                 capture.slices[static_cast<std::size_t>(slice)]);
-      const std::scoped_lock lock(reporting);
-      ++done;
-      if (progress) progress(done, total);
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    for (int k = 1; k < settings.threads; ++k) helpers.emplace_back(work);
-    work();
+  std::vector<PictureAngles> angles;
+  for (int slice = 0; slice < capture.layout.slice_count(); ++slice) {
+    const auto node = capture.layout.node_of(slice);
+    const double width = capture.layout.bin_width_rad();
+    angles.push_back({node.bin_h * width, node.bin_i * width});
   }
+  capture.slices = photograph_all(recipe, settings, *sample, angles, progress);
+  const auto life = source_life(recipe, settings);
+  if (!life) return tl::unexpected(life.error());
+  capture.life = *life;
   capture.analytic.lobes[0].s *= 1.0 - recipe.flakes->share;
   return capture;
 }

@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "core/error.hpp"
 #include "packs/tools/capture.hpp"
@@ -40,9 +42,20 @@ struct GoniometerSettings {
 /// Called after each slice, one call at a time, from any of the threads.
 using MeasureProgress = std::function<void(int done, int total)>;
 
+/// Angles of one picture, radians, inside the coat; theta_h + theta_i < pi/2 or so: beyond, flakes are black.
+struct PictureAngles {
+  double theta_h = 0.0;
+  double theta_i = 0.0;
+};
+
+/// Pictures of one sample of the recipe's flakes at any angles. Errors as for measure(), and a recipe without flakes.
+[[nodiscard]] Result<std::vector<FlakeSlice>> photographs(const Recipe& recipe, const GoniometerSettings& settings,
+                                                          std::span<const PictureAngles> angles);
+
 /// Photographs a recipe. Without flakes the capture has lobes and table only. Errors: settings out of range, more than
 /// 30 million flakes, a flake that would mirror more than it gets (R > 1 in a channel: names the coverage needed).
-/// The lobes of the capture are lowered: BRDF + mean flakes is the recipe.
+/// The lobes of the capture are lowered: BRDF + mean flakes is the recipe. The flakes' angular life is measured at fine
+/// angle steps on a smaller sample (flake_life.hpp).
 [[nodiscard]] Result<Capture> measure(const Recipe& recipe, const GoniometerSettings& settings = {},
                                       const MeasureProgress& progress = {});
 

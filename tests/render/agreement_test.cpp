@@ -44,9 +44,10 @@ gles::View camera(double distance_mm) {
 gles::Lighting one_light(FlakeMode flakes) {
   gles::Lighting lighting;
   lighting.lights = {{glm::normalize(glm::vec3(-0.4f, -0.8f, 0.7f)), glm::vec3(0.8f, 0.78f, 0.74f)}};
-  lighting.studio = false;
+  lighting.quality.path = gles::LightPath::none;
   lighting.dither = false;
-  lighting.flakes = flakes;
+  lighting.quality.smooth_edges = false;
+  lighting.quality.flakes = flakes;
   return lighting;
 }
 

@@ -16,15 +16,15 @@ using glm::dvec3;
 
 using Model = core::PaintModel<double>;
 
-/// flake_factor as FLAKE_TAPS 1 compiles it: C++ has the four-tap text, which at a node is that node's one tap.
+/// flake_factor as FLAKE_TAPS 1 compiles it: C++ has the four-tap text.
 dvec3 nearest_flakes(Model& model, const Model::Geometry& g, const dvec2& texel, double lod) {
-  const double fh = std::floor(g.theta_h * model.u_bins_per_rad + 0.5);
-  const double fi = std::floor(g.theta_i * model.u_bins_per_rad + 0.5);
+  const double fh = g.theta_h * model.u_bins_per_rad;
+  const double fi = g.theta_i * model.u_bins_per_rad;
   const double last = model.u_level_count - 1.0;
   const dvec3 mean = model.flake_mean(g.theta_h, g.theta_i);
   const double low = std::floor(std::max(lod, 0.0));
   const double part = std::max(lod, 0.0) - low;
-  const auto level = [&](double l) { return l >= last ? mean : model.flake_level(fh, fi, texel, l); };
+  const auto level = [&](double l) { return l >= last ? mean : model.flake_nearest(fh, fi, texel, l); };
   return level(low) * (1.0 - part) + level(low + 1.0) * part;
 }
 
@@ -49,7 +49,7 @@ CpuPicture shade_sphere(float radius_mm, const gles::View& view, const gles::Lig
   Model model;
   core::bind_model(paint, gpu.analytic(), gpu.textures(), model);
   gles::DisplayModel<double> display;
-  const bool flakes = lighting.flakes != gles::FlakeMode::off && gpu.textures().row_count > 0;
+  const bool flakes = lighting.quality.flakes != gles::FlakeMode::off && gpu.textures().row_count > 0;
   core::PaintTextures bare;  // no flakes: the same textures without means and slices
   if (!flakes) {
     bare = gpu.textures();
@@ -87,9 +87,9 @@ CpuPicture shade_sphere(float radius_mm, const gles::View& view, const gles::Lig
       dvec3 sum(0.0);
       for (std::size_t k = 0; k < lighting.lights.size(); ++k) {
         const dvec3 i(lighting.lights[k].direction);
-        const bool single = flakes && static_cast<int>(k) < lighting.flake_lights;
+        const bool single = flakes && static_cast<int>(k) < lighting.quality.flake_lights;
         sum += dvec3(lighting.lights[k].radiance) * std::max(glm::dot(n, i), 0.0) *
-               paint_factor(model, single ? lighting.flakes : gles::FlakeMode::mean, n, i, o, texel, lod);
+               paint_factor(model, single ? lighting.quality.flakes : gles::FlakeMode::mean, n, i, o, texel, lod);
       }
       const dvec3 shown = display.display_transform(sum * static_cast<double>(lighting.exposure));
       const std::size_t at =

@@ -19,13 +19,17 @@ namespace {
 using gles::Backend;
 using gles::FlakeMode;
 
+/// The paint's rows of the albedo texture: they depend on every weight.
+constexpr std::uint64_t albedo_bytes = 4u * (gles::albedo_row_count + 3) * gles::albedo_texels;  // and as one lobe
+
 const gles::View front{{0.0f, -400.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 40.0f, {}};
 
 gles::Lighting lit(FlakeMode flakes = FlakeMode::bilinear) {
   gles::Lighting lighting;
   lighting.lights = {{glm::normalize(glm::vec3(-0.4f, -0.8f, 0.6f)), glm::vec3(0.7f)}};
-  lighting.flakes = flakes;
+  lighting.quality.flakes = flakes;
   lighting.dither = false;
+  lighting.quality.smooth_edges = false;
   return lighting;
 }
 
@@ -39,7 +43,12 @@ packs::MeshPart square(packs::SurfaceKind kind, float y, float half) {
   return part;
 }
 
-packs::Scene scene_of(std::vector<packs::MeshPart> parts) { return {"test", std::move(parts), {}}; }
+packs::Scene scene_of(std::vector<packs::MeshPart> parts) {
+  packs::Scene scene;
+  scene.name = "test";
+  scene.parts = std::move(parts);
+  return scene;
+}
 
 bool mentions(const std::vector<std::string>& lines, std::string_view words) {
   return std::any_of(lines.begin(), lines.end(),
@@ -109,8 +118,9 @@ TEST_P(RendererTest, OnlyWhatDependsOnTheWeightsTravels) {
   core::Weights weights = mix(0.2);
   ASSERT_TRUE(renderer_->update(weights));
   const auto width = static_cast<std::uint64_t>(renderer_->paint()->textures().width);
-  const std::uint64_t chi = 4u * 19 * 19, flakes = 4u * 16 * 16 + 12u * width * rows;
-  EXPECT_EQ(renderer_->uploads().bytes - fixed.bytes, chi + flakes) << "the first update sends all of it";
+  const std::uint64_t chi = 4u * 19 * 19 + albedo_bytes, flakes = 4u * 16 * 16 + 12u * width * rows + albedo_bytes;
+  EXPECT_EQ(renderer_->uploads().bytes - fixed.bytes, chi + flakes - albedo_bytes)
+      << "the first update sends all of it";
 
   const auto sent = [&] {
     const gles::UploadCount before = renderer_->uploads();
@@ -152,14 +162,15 @@ TEST_P(RendererTest, PlainPackCompilesLessAndSaysSo) {
   const SyntheticPaint plain({.flakes = false, .table = false, .coat = false, .lobes = 1});
   ASSERT_TRUE(renderer_->set_paint(plain.get()));
   ASSERT_TRUE(renderer_->update(mix(0.5)));
-  EXPECT_EQ(renderer_->uploads().bytes, 0u) << "nothing of this pack lives in textures";
+  EXPECT_EQ(renderer_->uploads().bytes, albedo_bytes) << "nothing else of this pack lives in textures";
   gles::Lighting lighting = lit(FlakeMode::bilinear);
-  lighting.studio = false;
+  lighting.quality.path = gles::LightPath::none;
   renderer_->draw(front, lighting, *target_);
   const auto lines = renderer_->explain();
-  for (const char* words : {"left out: colour table", "left out: clear coat", "left out: refraction",
-                            "left out: flakes: no paint", "left out: 2 of 3 lobes", "left out: studio",
-                            "left out: glass", "program: paint, 1 lobe, 1 light", "programs: 1, draws: 1"})
+  for (const char* words :
+       {"left out: colour table", "left out: clear coat", "left out: refraction", "left out: flakes: no paint",
+        "left out: 2 of 3 lobes", "left out: environment", "left out: glass",
+        "program: paint, no environment, 1 lobe, 1 directional light", "programs: 1, draws: 1"})
     EXPECT_TRUE(mentions(lines, words)) << words;
 
   const SyntheticPaint rich;
@@ -258,6 +269,43 @@ TEST_P(RendererTest, StillSmoothsEdgesAndRepeats) {
   EXPECT_LT(steepest(smooth), steepest(once));
 }
 
+// Refining goes on until the frames are done, ends where still() ends, and starts again only when something changes.
+TEST_P(RendererTest, ARestingPictureConvergesAndStops) {
+  const SyntheticPaint paint;
+  ASSERT_TRUE(renderer_->set_paint(paint.get()));
+  ASSERT_TRUE(renderer_->update(mix(0.5)));
+  const gles::Lighting lighting = lit();
+  constexpr int frames = 32;
+  EXPECT_EQ(renderer_->refine(front, lighting, *target_, frames), false) << "nothing was drawn yet";
+  const gles::Image moving = picture(front, lighting);
+  int refined = 0;
+  gles::Image before = moving;
+  double largest_step = 0.0;
+  for (bool more = true; more; ++refined) {
+    const auto result = renderer_->refine(front, lighting, *target_, frames);
+    ASSERT_TRUE(result) << result.error().line();
+    more = *result;
+    const gles::Image now = target_->read();
+    largest_step = std::max(largest_step, compare_images(before, now).mean);
+    before = now;
+  }
+  EXPECT_EQ(refined, frames);
+  EXPECT_EQ(renderer_->refine(front, lighting, *target_, frames), false);
+  EXPECT_FALSE(renderer_->needs_draw(front, lighting, *target_));
+  EXPECT_EQ(renderer_->draw_count(), 1u) << "refining is not drawing";
+  const double whole = compare_images(moving, before).mean;
+  std::printf("  from moving to still: CIEDE2000 mean %.3f, largest step on the way %.3f\n", whole, largest_step);
+  EXPECT_GT(whole, 0.0);
+  EXPECT_LT(largest_step, 0.25 * whole + 0.1) << "the switch is a fade";
+  EXPECT_EQ(renderer_->still(front, lighting, *target_, frames), before);
+
+  gles::View moved = front;
+  moved.eye_mm.x += 1.0f;
+  EXPECT_EQ(renderer_->refine(moved, lighting, *target_, frames), false) << "a new view is drawn first";
+  picture(moved, lighting);
+  EXPECT_EQ(renderer_->refine(moved, lighting, *target_, frames), true);
+}
+
 // The light that the flakes add, single against mean, under the same camera (the raw brightness changes with distance,
 // because another part of the sphere comes into view). Measured: bilinear 0.973 to 1.017, nearest 0.958 to 1.013.
 // What is left is noise (some 5,000 texels in view at x1, one in twelve a flake), the invented paint's own levels,
@@ -274,11 +322,11 @@ TEST_P(RendererTest, ZoomingOutKeepsTheFlakesBrightness) {
       gles::View view = front;
       view.eye_mm.y = -400.0f * static_cast<float>(1 << step);
       gles::Lighting lighting = lit(mode);
-      lighting.studio = false;
+      lighting.quality.path = gles::LightPath::none;
       lighting.exposure = 0.12f;  // so that the tone curve stays linear for nearly all flakes
       const auto mask = shade_sphere(100.0f, view, lighting, paint.get(), *renderer_->paint(), 256, 256).mask;
       const auto luminance = [&](FlakeMode drawn) {
-        lighting.flakes = drawn;
+        lighting.quality.flakes = drawn;
         return mean_luminance(picture(view, lighting), mask);
       };
       const double without = luminance(FlakeMode::off), mean = luminance(FlakeMode::mean), single = luminance(mode);
@@ -306,7 +354,7 @@ TEST(Meshes, SplitKeepsEveryTriangle) {
       for (const std::uint16_t index : chunk.indices) {
         ASSERT_LT(index, chunk.vertices.size());
         ASSERT_EQ(chunk.vertices[index].position_mm, part.positions_mm[part.indices[at]]);
-        ASSERT_EQ(chunk.vertices[index].open[0], 255);
+        ASSERT_EQ(chunk.vertices[index].visibility, packs::open_visibility);
         ++at;
       }
     }

@@ -68,7 +68,8 @@ expect 2 'help' pack build
 expect 2 'help' pack info
 expect 2 'help' capture small.toml --no-such-option -o d
 expect 2 'edge' capture small.toml -o d --edge 100000
-expect 2 'MODEL' scene build tank -o s.lws
+expect 2 'paint' scene build tank -o s.lws
+expect 2 'help' scene build
 expect 2 'help' compare only-one.png
 for command in '' capture pack 'pack build' 'pack info' 'pack verify' scene 'scene build' compare; do
   # shellcheck disable=SC2086
@@ -158,6 +159,43 @@ cp s.lws t.lws
 flip t.lws 200
 expect 1 't.lws: digest' pack verify t.lws
 expect 1 'no/such' scene build sphere -o no/such/s.lws --occlusion-rays 0
+
+# Models and maps from elsewhere.
+cat >car.obj <<'OBJ'
+v 0 0 0
+v 0 4 0
+v 2 4 0
+v 2 0 1
+usemtl Lack
+f 1 3 2
+f 1 1 2
+usemtl Glas
+f 1 4 3
+OBJ
+succeed scene build car.obj -o m.lws --paint lack --material Glas=glass --occlusion-rays 8 --json
+grep -q '"Glas":"glass"' out.txt && grep -q '1 face without area left out' out.txt && grep -q '"fit_error_p95"' out.txt ||
+  { echo 'FAILED: scene build --json'; failures=$((failures + 1)); }
+succeed pack verify m.lws
+sed 's/v 0 4 0/v 0 nan 0/' car.obj >nan.obj
+sed '/^f/d' car.obj >faceless.obj
+: >empty.glb
+expect 1 'nowhere.glb: no such file' scene build nowhere.glb --paint a -o m.lws
+expect 1 'car.obj: --paint: .*Lack, Glas' scene build car.obj --paint Body -o m.lws
+expect 1 "car.obj: --material: .*'Body'" scene build car.obj --paint Lack --material Body=glass -o m.lws
+expect 1 'nan.obj: .*not finite' scene build nan.obj --paint Lack -o m.lws
+expect 1 'faceless.obj' scene build faceless.obj --paint Lack -o m.lws
+expect 1 'empty.glb' scene build empty.glb --paint Lack -o m.lws
+expect 1 'small.toml' scene build small.toml --paint Lack -o m.lws
+expect 1 'nowhere.hdr' scene build sphere --env nowhere.hdr -o m.lws
+expect 2 'small.toml' scene build sphere --env small.toml -o m.lws
+expect 2 'material' scene build car.obj --paint Lack --material Glas -o m.lws
+expect 2 'gold' scene build car.obj --paint Lack --material Glas=gold -o m.lws
+expect 2 'paint' scene build sphere --paint Lack -o m.lws
+expect 2 'up' scene build car.obj --paint Lack --up x -o m.lws
+expect 2 'room-radius' scene build sphere --room-radius-mm 5 -o m.lws
+expect 2 'length' scene build car.obj --paint Lack --length-mm -4 -o m.lws
+expect 2 'core-es2' render --core-es2 x --pack p.lwp -o w.png
+expect 2 'rung' render --rung x --pack p.lwp -o w.png
 
 echo "$checks runs, $failures failures"
 test "$failures" -eq 0

@@ -43,5 +43,9 @@ cmp -s "$demo/demo.lwp" "$work/flipped.lwp" && printf '\x02' | dd of="$work/flip
 expect 1 "flipped.lwp" --pack "$work/flipped.lwp" --scene "$demo/sphere.lws" --frames 1
 expect 1 "record" "${good[@]}" --record /proc/no
 expect 1 "screenshot\|png" "${good[@]}" --screenshot /proc/no.png
+expect 2 "core-es2" "${good[@]}" --core-es2 x
+expect 2 "quality" "${good[@]}" --quality x
+expect 2 "still-frames" "${good[@]}" --still-frames 999
+expect 2 "frame-ms" "${good[@]}" --frame-ms 0
 echo "$checks runs, $failures failures"
 [ $failures -eq 0 ]

@@ -1,4 +1,4 @@
-#include "packs/tools/image_compare.hpp"
+#include "packs/tools/difference_picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,19 +53,57 @@ TEST(ImageCompare, SizesMustAgree) {
   EXPECT_NE(difference.error().what.find("2x3"), std::string::npos);
 }
 
-TEST(ImageCompare, MapsAreWrittenAndReadAsEncodedGrey) {
+TEST(ImageCompare, OnlyWhiteOfTheMaskCounts) {
+  LinearImage white_right = grey_image(4, 1, 0.1f);
+  white_right.pixels[2] = white_right.pixels[3] = glm::vec3(0.9f);
+  const PixelMask mask = mask_of(white_right);
+  EXPECT_EQ(mask, (PixelMask{0, 0, 1, 1}));
+  const LinearImage a = grey_image(4, 1, 0.25f);
+  LinearImage b = a;
+  b.pixels[0] = b.pixels[3] = glm::vec3(0.5f);
+  std::vector<float> map;
+  const auto masked = compare_images(a, b, &map, mask), whole = compare_images(a, b);
+  ASSERT_TRUE(masked && whole);
+  EXPECT_EQ(masked->pixels, 2u);
+  EXPECT_NEAR(masked->mean, whole->max / 2.0, 1e-5);
+  EXPECT_EQ(map[0], -1.0f);
+  EXPECT_EQ(map[2], 0.0f);
+  EXPECT_NEAR(map[3], whole->max, 1e-5);
+  EXPECT_EQ(compare_images(a, b, nullptr, PixelMask(3, 1)).error().field, "mask");
+  EXPECT_EQ(compare_images(a, b, nullptr, PixelMask(4, 0)).error().field, "mask");
+}
+
+TEST(ImageCompare, PictureShowsBothAndTheMap) {
   const TemporaryFolder folder;
-  const std::vector<float> map = {0.0f, 5.0f, 10.0f, 1000.0f};
-  const auto written = write_difference_map(folder / "map.png", 2, 2, map);
+  const LinearImage a = grey_image(64, 32, 0.25f), b = grey_image(64, 32, 0.5f);
+  const std::vector<float> map(64 * 32, 2.0f);
+  const auto written = write_difference_picture(folder / "map.png", a, b, map, "note");
   ASSERT_TRUE(written) << written.error().line();
   const auto image = read_image(folder / "map.png");
   ASSERT_TRUE(image) << image.error().line();
-  ASSERT_EQ(image->width, 2);
-  ASSERT_EQ(image->pixels.size(), 4u);
-  EXPECT_EQ(image->pixels[0], glm::vec3(0.0f));
-  EXPECT_NEAR(image->pixels[1].y, core::srgb_decode(128.0 / 255.0), 1e-6);
-  EXPECT_EQ(image->pixels[2], glm::vec3(1.0f));
-  EXPECT_EQ(image->pixels[3], glm::vec3(1.0f));
+  const auto pixel = [&](int x, int y) {
+    return image
+        ->pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x)];
+  };
+  EXPECT_NEAR(pixel(8 + 32, 8 + 16).y, 0.25f, 3e-3);
+  EXPECT_NEAR(pixel(2 * 8 + 64 + 32, 8 + 16).y, 0.5f, 3e-3);
+  const glm::vec3 seen = pixel(3 * 8 + 2 * 64 + 32, 8 + 16), meant = map_colour(2.0f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(core::srgb_encode(static_cast<double>(seen[c])), meant[c], 3e-3);
+}
+
+TEST(ImageCompare, ScaleRisesFromBlackToWhite) {
+  EXPECT_EQ(map_colour(0.0f), glm::vec3(0.0f));
+  EXPECT_EQ(map_colour(map_scale_end), glm::vec3(1.0f));
+  EXPECT_EQ(map_colour(1000.0f), glm::vec3(1.0f));
+  double last = -1.0;
+  for (int k = 0; k <= 100; ++k) {
+    const glm::vec3 colour = map_colour(static_cast<float>(k) * 0.1f);
+    const double lightness = core::lab_from_linear(glm::dvec3(core::srgb_decode(colour.x), core::srgb_decode(colour.y),
+                                                              core::srgb_decode(colour.z)))
+                                 .x;
+    EXPECT_GT(lightness, last) << k;
+    last = lightness;
+  }
 }
 
 TEST(ImageCompare, BadFilesAreErrors) {
@@ -73,14 +111,16 @@ TEST(ImageCompare, BadFilesAreErrors) {
   EXPECT_FALSE(read_image(folder / "missing.png"));
   testing::write_bytes(folder / "text.png", "no picture", 10);
   EXPECT_FALSE(read_image(folder / "text.png"));
-  ASSERT_TRUE(write_difference_map(folder / "map.png", 64, 64, std::vector<float>(64 * 64, 3.0f)));
+  const LinearImage grey = grey_image(64, 64, 0.3f);
+  const std::vector<float> map(64 * 64, 3.0f);
+  ASSERT_TRUE(write_difference_picture(folder / "map.png", grey, grey, map, ""));
   const auto bytes = testing::read_bytes(folder / "map.png");
   testing::write_bytes(folder / "cut.png", bytes.data(), bytes.size() / 2);
   const auto cut = read_image(folder / "cut.png");
   ASSERT_FALSE(cut);
   EXPECT_NE(cut.error().file.find("cut.png"), std::string::npos);
-  EXPECT_FALSE(write_difference_map(folder / "map.unknown", 2, 2, std::vector<float>(4)));
-  EXPECT_FALSE(write_difference_map(folder / "no" / "map.png", 2, 2, std::vector<float>(4)));
+  EXPECT_FALSE(write_difference_picture(folder / "map.unknown", grey, grey, map, ""));
+  EXPECT_FALSE(write_difference_picture(folder / "no" / "map.png", grey, grey, map, ""));
 }
 
 }  // namespace

@@ -92,6 +92,7 @@ struct SamplePack {
       part.analytic.lobes[1] = {{0.1, 0.2, 0.3}, 0.1 + 1.0 / 3.0 * 0.1, 0.9};
       part.analytic.coat_ior = 1.5;
       if (k == 0) part.analytic.table = core::ColourTable{2, {{1, 1, 1}, {1.5f, 0, 0}, {0, 1, 0}, {0.1f, 0, 1}}};
+      part.life = {6.25f, 30.0f, core::LifeOrigin::fine};
       paint.paints.push_back(std::move(part));
       contents.info.errors.push_back({0.5f, 0.75f, {0.25f, 0.75f}});
     }

@@ -151,7 +151,7 @@ struct FlakePaint {
     paint.mass = mass;
     paint.row_mass = 1000;
     paint.random_seed = 5;
-    paint.paints.push_back({{}, {}, begin, clusters, index});
+    paint.paints.push_back({{}, {}, begin, clusters, index, {}});
   }
 };
 

@@ -29,6 +29,7 @@ void expect_same(const core::InterpolatablePaint& a, const core::InterpolatableP
     EXPECT_EQ(copy(a.paints[k].cluster_begin), copy(b.paints[k].cluster_begin));
     EXPECT_EQ(copy(a.paints[k].clusters), copy(b.paints[k].clusters));
     EXPECT_EQ(copy(a.paints[k].tuple_cluster), copy(b.paints[k].tuple_cluster));
+    EXPECT_EQ(a.paints[k].life, b.paints[k].life);
   }
   EXPECT_EQ(a.layout, b.layout);
   EXPECT_EQ(a.level_count, b.level_count);
@@ -168,6 +169,10 @@ std::vector<BadMeaning> bad_meanings() {
       {"paints[1].error.flake_w1_mean", [](SamplePack& s) { s.contents.info.errors[1].flake_w1_mean = nanf; }},
       {"paints[1].error.flake_w1_max", [](SamplePack& s) { s.contents.info.errors[1].flake_w1_max = -1.0f; }},
       {"paints[1].error.flake_w1_slice", [](SamplePack& s) { s.contents.info.errors[1].flake_w1_slice = {1.0f}; }},
+      {"paints[1].life", [](SamplePack& s) { s.contents.paint.paints[1].life.cell_h_deg = 0.0f; }},
+      {"paints[1].life", [](SamplePack& s) { s.contents.paint.paints[1].life.cell_i_deg = nanf; }},
+      {"paints[0].life.origin",
+       [](SamplePack& s) { s.contents.paint.paints[0].life.origin = static_cast<core::LifeOrigin>(3); }},
       {"num_theta", [](SamplePack& s) { s.contents.paint.layout.num_theta = 0; }},
       {"num_theta", [](SamplePack& s) { s.contents.paint.layout.num_theta = 16; }},
       {"layout",

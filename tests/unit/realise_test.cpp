@@ -207,7 +207,7 @@ AnalyticPaint lobed(std::initializer_list<Lobe> lobes) {
 
 InterpolatablePaint analytic_mix(const std::vector<AnalyticPaint>& parts) {
   InterpolatablePaint paint;
-  for (const AnalyticPaint& part : parts) paint.paints.push_back({{}, part, {}, {}, {}});
+  for (const AnalyticPaint& part : parts) paint.paints.push_back({{}, part, {}, {}, {}, {}});
   return paint;
 }
 

@@ -12,18 +12,17 @@ namespace {
 /// Encloses the left half; its spine runs where every part of the body can be seen from.
 constexpr WrapBox body_box{{-2420, 0, 60}, {2420, 1050, 1560}, -1650, 1500, 620, 0, 90};
 
-SurfaceMesh mesh_body(const BodyField& body, const BodyGraphics& graphics) {
+SurfaceMesh mesh_body(const BodyField& body, const BodyGraphics& graphics, const BodyFineness& fineness) {
   SurfaceMesh mesh = wrap_field(body, body_box);
   MeshQuality quality;
-  quality.tolerance = [&graphics](const Vec3& p) {
-    constexpr double glossy_error_deg = 0.26;
-    constexpr double glass_error_deg = 0.9;
+  quality.tolerance = [&graphics, &fineness](const Vec3& p) {
     constexpr double dull_error_deg = 15.0;
-    const double limit = graphics.edge_limit(p);
+    const double limit = graphics.edge_limit(p) * fineness.edge_scale;
     if (graphics.is_dull(p)) return Tolerance{limit, 45.0, dull_error_deg};
-    return Tolerance{limit, 12.0, graphics.is_window(p) ? glass_error_deg : glossy_error_deg};
+    return Tolerance{limit, fineness.bend_deg,
+                     graphics.is_window(p) ? fineness.glass_error_deg : fineness.glossy_error_deg};
   };
-  quality.shortest_edge_mm = 8.0;
+  quality.shortest_edge_mm = fineness.shortest_edge_mm;
   refine(mesh, body, quality);
   MeshCutter cutter(mesh, body);
   for (const Cut& cut : graphics.cuts()) cutter.cut(cut);
@@ -129,8 +128,9 @@ void add_wheel_returns(BodyParts& parts, const Patch& opening, const BodyGraphic
 
 }  // namespace
 
-BodyParts build_body(const BodyField& body, const BodyGraphics& graphics, const BodyShape& shape) {
-  const SurfaceMesh mesh = mesh_body(body, graphics);
+BodyParts build_body(const BodyField& body, const BodyGraphics& graphics, const BodyShape& shape,
+                     const BodyFineness& fineness) {
+  const SurfaceMesh mesh = mesh_body(body, graphics, fineness);
   std::vector<Region> region_of;
   region_of.reserve(mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {

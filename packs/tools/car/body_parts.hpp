@@ -20,6 +20,16 @@ struct BodyParts {
   Patch lining;  ///< inside of roof and pillars
 };
 
-[[nodiscard]] BodyParts build_body(const BodyField& body, const BodyGraphics& graphics, const BodyShape& shape);
+/// How finely the outside is meshed.
+struct BodyFineness {
+  double edge_scale = 1.0;         ///< of what the drawing asks for: borders fine, open surface coarser
+  double bend_deg = 12.0;          ///< between the normals at both ends of an edge
+  double glossy_error_deg = 0.26;  ///< of an interpolated normal on paint: below it reflections look ragged
+  double glass_error_deg = 0.9;
+  double shortest_edge_mm = 8.0;
+};
+
+[[nodiscard]] BodyParts build_body(const BodyField& body, const BodyGraphics& graphics, const BodyShape& shape,
+                                   const BodyFineness& fineness);
 
 }  // namespace lackwerk::packs::car

@@ -8,8 +8,8 @@
 
 namespace lackwerk::packs {
 
-/// The car with its floor, occlusion baked, cameras 'hero' (default), 'side', 'rear', 'front', 'rim', 'macro',
-/// 'stripe'.
+/// The car with its floor at both levels of detail, cameras 'hero' (default), 'side', 'rear', 'front', 'rim', 'macro',
+/// 'stripe'. Neither lit nor baked, like the others: set `environment`, then call bake_scene.
 [[nodiscard]] Scene build_builtin_car();
 
 /// A sphere resting on z = 0, with cameras 'hero' and 'macro'; no floor.

@@ -1,0 +1,32 @@
+// A model file as lists of triangles by material.
+//
+// Why it exists: the one place that knows Assimp. What comes out is finite and has its indices in range; it may still
+// lack normals and have faces without area. Free function; one thread.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace lackwerk::packs {
+
+struct ModelMesh {
+  std::size_t material = 0;                   ///< index into Model::materials
+  std::vector<glm::vec3> positions, normals;  ///< in the file's axes and unit; normals: one per position or none
+  std::vector<std::uint32_t> indices;         ///< three a triangle
+};
+struct Model {
+  std::vector<std::string> materials;  ///< those that triangles use
+  std::vector<ModelMesh> meshes;
+  bool is_gltf = false;  ///< metres, y up
+};
+
+/// Nodes are applied, polygons triangulated, equal vertices joined; points, lines, textures and everything else that is
+/// no surface is left out.
+[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path);
+
+}  // namespace lackwerk::packs
