@@ -16,7 +16,7 @@ namespace lackwerk::gles {
 struct Rung {
   std::string_view name;
   Quality quality;
-  double cost;  ///< frame time over that of the first rung: docs/figures.md, whole car on a software rasteriser
+  double cost;  ///< guess of its frame time over that of the first rung; docs/figures.md has what was measured
 };
 
 /// Best first. Each leaves out what costs most for what it shows.

@@ -17,8 +17,6 @@ namespace {
 constexpr int mirror_reduction = 3;
 constexpr int smallest_mirror_px = 32;
 
-float luminance_of(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-
 /// Directional lights of the mood and, on that path, of the environment's cut.
 std::vector<DirectionalLight> all_lights(const Lighting& lighting, const core::Environment& environment) {
   std::vector<DirectionalLight> lights = lighting.lights;
@@ -29,7 +27,7 @@ std::vector<DirectionalLight> all_lights(const Lighting& lighting, const core::E
     });
   }
   std::stable_sort(lights.begin(), lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
-    return luminance_of(a.radiance) > luminance_of(b.radiance);
+    return core::luminance_of(glm::dvec3(a.radiance)) > core::luminance_of(glm::dvec3(b.radiance));
   });
   return lights;
 }
