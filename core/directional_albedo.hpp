@@ -10,6 +10,8 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
 
 #include "core/interpolatable_paint.hpp"
 #include "core/paint_textures.hpp"
@@ -31,10 +33,32 @@ struct AlbedoRow {
   /// How far that light is spread: the environment level whose directions have the same mean resultant length.
   std::array<float, albedo_columns> level{};
   std::array<float, albedo_columns> resultant{};  ///< that length, (0, 1]
+  bool operator==(const AlbedoRow&) const = default;
 };
-using AlbedoTable = std::array<AlbedoRow, paint_term_count>;
+/// What rows were made of.
+struct AlbedoSource {
+  struct Part {
+    Lobe lobe;  ///< the diffuse part has s alone, the flakes m
+    double coat_ior = 1.0, refraction_ior = 1.0;
+    bool operator==(const Part&) const = default;
+  };
+  std::array<bool, paint_term_count> known{};
+  std::array<std::optional<Part>, paint_term_count> parts;
+  int table_size = 0;
+  float chi_scale = 1.0f, bins_per_rad = 0.0f;
+  std::vector<std::uint8_t> chi, mean;  ///< as in PaintTextures
+  double flake_m = 1.0;                 ///< flake_roughness
+};
 
-/// Integrates all parts by a fixed rank-1 lattice of directions drawn from each lobe: about a millisecond.
+struct AlbedoTable {
+  std::array<AlbedoRow, paint_term_count> rows{};
+  AlbedoSource source;  ///< so that only those rows are made again whose part of the paint has changed
+  [[nodiscard]] AlbedoRow& operator[](std::size_t term) { return rows[term]; }
+  [[nodiscard]] const AlbedoRow& operator[](std::size_t term) const { return rows[term]; }
+};
+
+/// Integrates all parts by a fixed rank-1 lattice of directions drawn from each lobe: about a millisecond, and a
+/// seventh of it where the flakes' weights alone have changed since `out` was made.
 /// `paint` and `textures` describe the flakes (may be without any).
 void directional_albedo(const InterpolatablePaint& paint, const AnalyticPaint& analytic, const PaintTextures& textures,
                         AlbedoTable& out);

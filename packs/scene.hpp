@@ -50,14 +50,13 @@ inline constexpr std::uint8_t detail_coarse = 2;  ///< moving pictures on weak m
 
 /// One indexed triangle mesh of one material. Arrays have equal length, except `indices` (a multiple of three).
 struct MeshPart {
-  std::string name;                             ///< "body", "window_front", ...: for messages only
-  SurfaceKind kind = SurfaceKind::paint;        ///
-  std::vector<glm::vec3> positions_mm;          ///< vertices, millimetres
-  std::vector<glm::vec3> normals;               ///< unit length, pointing outward
-  std::vector<std::uint8_t> ambient_occlusion;  ///< 255 = open, 0 = closed; empty = all open
-  std::vector<std::uint32_t> indices;           ///< counter-clockwise seen from outside
-  std::vector<Visibility> visibility;           ///< empty = all open
-  std::vector<Irradiance> irradiance;           ///< empty = not baked: the renderer asks the environment's last level
+  std::string name;                       ///< "body", "window_front", ...: for messages only
+  SurfaceKind kind = SurfaceKind::paint;  ///
+  std::vector<glm::vec3> positions_mm;    ///< vertices, millimetres
+  std::vector<glm::vec3> normals;         ///< unit length, pointing outward
+  std::vector<std::uint32_t> indices;     ///< counter-clockwise seen from outside
+  std::vector<Visibility> visibility;     ///< empty = all open
+  std::vector<Irradiance> irradiance;     ///< empty = not baked: the renderer asks the environment's last level
   std::uint8_t detail = detail_full | detail_coarse;
 };
 

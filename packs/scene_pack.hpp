@@ -16,7 +16,9 @@
 
 namespace lackwerk::packs {
 
-inline constexpr std::uint32_t scene_schema_version = 2;  ///< 1 had no light in it and is refused
+/// Written. 1 had no light in it and is refused; 2 had ambient occlusion as well, which visibility and irradiance hold.
+inline constexpr std::uint32_t scene_schema_version = 3;
+inline constexpr std::uint32_t oldest_scene_schema_version = 2;  ///< read
 /// Core ES 2.0 draws with 16-bit indices: no part of a scene pack has more vertices.
 inline constexpr std::size_t max_part_vertices = 65535;
 inline constexpr std::size_t max_scene_parts = 4096;

@@ -34,8 +34,6 @@ Result<void> check_part(const MeshPart& part, const std::string& name, const std
     return fail(file, name + ".kind", "is not known", remedy);
   if (vertices == 0 || part.indices.empty()) return fail(file, name, "has no triangles", remedy);
   if (part.normals.size() != vertices) return fail(file, name + ".normals", "must be one per vertex", remedy);
-  if (!part.ambient_occlusion.empty() && part.ambient_occlusion.size() != vertices)
-    return fail(file, name + ".ambient_occlusion", "must be one per vertex or none", remedy);
   if (!part.visibility.empty() && part.visibility.size() != vertices)
     return fail(file, name + ".visibility", "must be one per vertex or none", remedy);
   if (!part.irradiance.empty() && part.irradiance.size() != vertices)
@@ -116,13 +114,17 @@ Result<void> check_environment_counts(std::size_t atlas_bytes, std::size_t light
   return {};
 }
 
-Result<void> check_scene(const Scene& scene, const std::string& file) {
+Result<void> check_counts_of(const Scene& scene, const std::string& file) {
   std::size_t vertices = 0, indices = 0;
   for (const MeshPart& part : scene.parts) {
     vertices += part.positions_mm.size();
     indices += part.indices.size();
   }
-  if (auto ok = check_scene_counts(scene.parts.size(), scene.cameras.size(), vertices, indices, file); !ok) return ok;
+  return check_scene_counts(scene.parts.size(), scene.cameras.size(), vertices, indices, file);
+}
+
+Result<void> check_scene(const Scene& scene, const std::string& file) {
+  if (auto ok = check_counts_of(scene, file); !ok) return ok;
   if (scene.name.size() > max_scene_name_bytes) return fail(file, "name", "must have at most 200 bytes", "shorten it");
   for (std::size_t k = 0; k < scene.parts.size(); ++k)
     if (auto ok = check_part(scene.parts[k], item_name("parts", k), file); !ok) return ok;

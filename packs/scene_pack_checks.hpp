@@ -20,6 +20,7 @@ inline constexpr float max_unit_error = 1e-2f;  ///< by which a normal's length 
 /// The counts alone, for before memory is taken.
 [[nodiscard]] Result<void> check_scene_counts(std::size_t parts, std::size_t cameras, std::size_t vertices,
                                               std::size_t indices, const std::string& file);
+[[nodiscard]] Result<void> check_counts_of(const Scene& scene, const std::string& file);
 [[nodiscard]] Result<void> check_environment_counts(std::size_t atlas_bytes, std::size_t lights,
                                                     const std::string& file);
 

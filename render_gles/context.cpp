@@ -102,6 +102,8 @@ int usable_sparkle_lights(const ContextInfo& info, int directional_lights) {
 }
 
 Result<std::unique_ptr<Context>> create_context(Backend backend, const ContextSettings& settings) {
+  if (backend == Backend::egl_gbm)
+    return fail("EGL", "GBM", "needs a graphics card", "open an output of the kms platform", ErrorKind::usage);
   return backend == Backend::osmesa ? create_osmesa(settings) : create_egl_surfaceless(settings);
 }
 

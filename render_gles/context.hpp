@@ -1,4 +1,4 @@
-// One OpenGL ES 2.0 context without a window: EGL surfaceless, or OSMesa.
+// One OpenGL ES 2.0 context: EGL surfaceless, OSMesa, or EGL on a card's own buffers (egl_gbm.hpp).
 //
 // Why it exists: the kiosk, the tools and the tests draw into their own framebuffer objects, so all they need of a
 // backend is "make current" and a function table. A context belongs to one thread at a time. Several may live in one
@@ -20,9 +20,10 @@ namespace lackwerk::gles {
 enum class Backend {
   egl_surfaceless,  ///< EGL without a surface: a GPU where there is one, else Mesa's software rasteriser
   osmesa,           ///< libOSMesa, loaded at run time: always software
+  egl_gbm,          ///< EGL on the buffers of a graphics card; made by GbmContext::create, which has the card
 };
 
-/// "egl" or "osmesa", as on the command line.
+/// "egl" (both kinds) or "osmesa", as on the command line.
 [[nodiscard]] const char* backend_name(Backend backend);
 
 /// Whether a context hides what OpenGL ES 2.0 does not promise, so that a driver that offers more draws as the weakest
@@ -98,8 +99,8 @@ class Context {
   ContextInfo info_;
 };
 
-/// Creates a context and makes it current. Error: names every way that was tried and why it failed, and what to
-/// install.
+/// Creates a context that needs no card and makes it current. Error: names every way that was tried and why it failed,
+/// and what to install.
 [[nodiscard]] Result<std::unique_ptr<Context>> create_context(Backend backend, const ContextSettings& settings = {});
 
 /// The two makers behind create_context.

@@ -5,32 +5,12 @@
 #include <EGL/eglext.h>
 
 #include <array>
-#include <cstring>
 
 #include "render_gles/context.hpp"
+#include "render_gles/egl_tools.hpp"
 
 namespace lackwerk::gles {
 namespace {
-
-/// EGL's error by its name: the numbers mean nothing to a reader of a log.
-std::string egl_error_text() {
-  const EGLint code = eglGetError();
-  static constexpr std::array<const char*, 15> names = {
-      "EGL_SUCCESS",       "EGL_NOT_INITIALIZED", "EGL_BAD_ACCESS",        "EGL_BAD_ALLOC",
-      "EGL_BAD_ATTRIBUTE", "EGL_BAD_CONFIG",      "EGL_BAD_CONTEXT",       "EGL_BAD_CURRENT_SURFACE",
-      "EGL_BAD_DISPLAY",   "EGL_BAD_MATCH",       "EGL_BAD_NATIVE_PIXMAP", "EGL_BAD_NATIVE_WINDOW",
-      "EGL_BAD_PARAMETER", "EGL_BAD_SURFACE",     "EGL_CONTEXT_LOST"};
-  const EGLint index = code - EGL_SUCCESS;
-  if (index >= 0 && index < static_cast<EGLint>(names.size())) return names[static_cast<std::size_t>(index)];
-  return "EGL error " + std::to_string(code);
-}
-
-/// Extension lists are words separated by blanks.
-bool has_word(const char* list, std::string_view word) {
-  if (list == nullptr) return false;
-  const std::string padded = " " + std::string(list) + " ";
-  return padded.find(" " + std::string(word) + " ") != std::string::npos;
-}
 
 struct Candidate {
   std::string name;
@@ -83,8 +63,7 @@ class EglContext final : public Context {
         return fail("EGL", platform, "neither surfaceless contexts nor pbuffers: " + egl_error_text());
     }
     if (auto current = make_current(); !current) return current;
-    const GetProc find = [](const char* name) { return reinterpret_cast<void*>(eglGetProcAddress(name)); };
-    auto api = GlApi::load(find, "EGL " + platform);
+    auto api = GlApi::load(egl_get_proc(), "EGL " + platform);
     if (!api) return tl::unexpected(api.error());
     gl_ = *api;
     info_ = describe_context(gl_, platform + (surfaceless ? "" : " (pbuffer)"), core_es2);

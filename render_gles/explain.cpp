@@ -1,6 +1,7 @@
 // Renderer::explain: what was left out of a picture, and why.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "render_gles/renderer.hpp"
@@ -8,9 +9,9 @@
 namespace lackwerk::gles {
 namespace {
 
-std::string short_number(double value) {
+std::string short_number(double value, int digits = 1) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
   return text.data();
 }
 
@@ -40,6 +41,15 @@ std::vector<std::string> Renderer::explain() const {
                       short_number(100.0 * moving_contrast) + " % (mip level " +
                       short_number(paint_->calm_level(moving_contrast)) + " and above)");
       }
+      if (lighting.quality.path == LightPath::lights) {
+        const std::vector<core::EnvironmentLight> cut = core::lights_of(environment_, lighting.quality.cut_lights);
+        const double parts = effective_parts(cut);
+        out.push_back("environment: " + std::to_string(cut.size()) + " lights, worth " + short_number(parts) +
+                      " even parts of the sphere; what is sharper than m = " +
+                      short_number(std::sqrt(share_border / parts), 2) + " is looked up instead");
+      }
+      if (lighting.orange_peel_mrad > 0.0f && !context_.info().fragment_highp)
+        out.emplace_back("left out: orange peel: the driver's fragment shaders have 16-bit floats");
       if (lighting.lights.empty()) out.emplace_back("left out: directional lights: none is set");
       if (lighting.quality.flakes == FlakeMode::off) out.emplace_back("left out: flakes and their mean: switched off");
       if (lighting.quality.flakes == FlakeMode::mean)

@@ -1,5 +1,6 @@
 // Light from the environment for moving pictures: one prefiltered look-up per part of the paint, times that part's
-// directional albedo (core/directional_albedo.hpp).
+// directional albedo (core/directional_albedo.hpp). LOOKUP0..4: which of lobes 0 to 2, the flakes and the diffuse
+// part are looked up; on PATH 3 lights give the others, or a share that the scales leave out (light_shares.hpp).
 //
 // From the surroundings: the functions of environment.glsl; sampler2D u_albedo (columns over sqrt(n.o); rows per
 // material: diffuse, lobe 0, [lean, level / 9] of lobes 0 and 1, of lobe 2 and the flakes, lobe 1, lobe 2, flakes;
@@ -27,32 +28,34 @@ vec3 narrow_term(vec4 t, real scale, vec2 shape, vec3 towards_n, vec3 towards_r)
 // view direction.
 vec3 filtered_lobes(real co, vec3 towards_n, vec3 towards_r) {
   vec3 sum = vec3(0.0);
-#if LOBES > 0
+#if (LOBES > 0 && LOOKUP0) || (LOBES > 1 && LOOKUP1)
   vec4 shape01 = fetch_albedo(co, 2.0);
+#endif
+#if LOBES > 0 && LOOKUP0
 #if NARROW0
   sum += narrow_term(fetch_albedo(co, 1.0), u_albedo_scale.x, shape01.xy, towards_n, towards_r);
 #else
   sum += stacked_term(fetch_albedo(co, 1.0), u_albedo_scale.x, shape01.xy, towards_n, towards_r);
 #endif
 #endif
-#if LOBES > 1
+#if LOBES > 1 && LOOKUP1
 #if NARROW1
   sum += narrow_term(fetch_albedo(co, 4.0), u_albedo_scale.y, shape01.zw, towards_n, towards_r);
 #else
   sum += stacked_term(fetch_albedo(co, 4.0), u_albedo_scale.y, shape01.zw, towards_n, towards_r);
 #endif
 #endif
-#if LOBES > 2 || HAS_FLAKES
+#if (LOBES > 2 && LOOKUP2) || (HAS_FLAKES && LOOKUP3)
   vec4 shape23 = fetch_albedo(co, 3.0);
 #endif
-#if LOBES > 2
+#if LOBES > 2 && LOOKUP2
 #if NARROW2
   sum += narrow_term(fetch_albedo(co, 5.0), u_albedo_scale.z, shape23.xy, towards_n, towards_r);
 #else
   sum += stacked_term(fetch_albedo(co, 5.0), u_albedo_scale.z, shape23.xy, towards_n, towards_r);
 #endif
 #endif
-#if HAS_FLAKES
+#if HAS_FLAKES && LOOKUP3
   sum += stacked_term(fetch_albedo(co, 6.0), u_albedo_scale.w, shape23.zw, towards_n, towards_r);
 #endif
   return sum;

@@ -32,23 +32,33 @@ int narrow_lobes(const core::InterpolatablePaint& paint) {
 
 }  // namespace
 
+void apply_shares(const GlApi& gl, const Program& program, const core::AnalyticPaint& paint,
+                  const LightShares& shares) {
+  const glm::vec3 diffuse = narrow(paint.diffuse) * shares.front();
+  gl.Uniform3f(program.location("u_diffuse"), diffuse.x, diffuse.y, diffuse.z);
+  std::array<float, 4 * core::max_lobes> lobes{};
+  for (std::size_t k = 0; k < core::max_lobes; ++k) {
+    const core::Lobe& lobe = paint.lobes[k];
+    for (int c = 0; c < 3; ++c)
+      lobes[4 * k + static_cast<std::size_t>(c)] = static_cast<float>(lobe.s[c]) * shares[k + 1];
+    lobes[4 * k + 3] = static_cast<float>(lobe.f0);
+  }
+  // As many as the program has: a longer array than it declares is an error.
+  if (const int count = program.size("u_lobe"); count > 0)
+    gl.Uniform4fv(program.location("u_lobe"), count, lobes.data());
+}
+
 void apply_analytic(const GlApi& gl, const Program& program, const core::AnalyticPaint& paint) {
   const auto vector = [&](const char* name, const glm::vec3& v) {
     gl.Uniform3f(program.location(name), v.x, v.y, v.z);
   };
   const auto number = [&](const char* name, double v) { gl.Uniform1f(program.location(name), static_cast<float>(v)); };
-  vector("u_diffuse", narrow(paint.diffuse));
-  std::array<float, 4 * core::max_lobes> lobes{};
+  LightShares all{};
+  all.fill(1.0f);
+  apply_shares(gl, program, paint, all);
   glm::vec3 inv_m(1.0f);
-  for (std::size_t k = 0; k < core::max_lobes; ++k) {
-    const core::Lobe& lobe = paint.lobes[k];
-    for (int c = 0; c < 3; ++c) lobes[4 * k + static_cast<std::size_t>(c)] = static_cast<float>(lobe.s[c]);
-    lobes[4 * k + 3] = static_cast<float>(lobe.f0);
-    inv_m[static_cast<int>(k)] = static_cast<float>(1.0 / lobe.m);
-  }
-  // As many as the program has: a longer array than it declares is an error.
-  if (const int count = program.size("u_lobe"); count > 0)
-    gl.Uniform4fv(program.location("u_lobe"), count, lobes.data());
+  for (std::size_t k = 0; k < core::max_lobes; ++k)
+    inv_m[static_cast<int>(k)] = static_cast<float>(1.0 / paint.lobes[k].m);
   vector("u_inv_m", inv_m);
   number("u_coat_ior", paint.coat_ior);
   number("u_refraction_ior", paint.refraction_ior);

@@ -14,6 +14,7 @@
 #include "core/interpolatable_paint.hpp"
 #include "core/paint_textures.hpp"
 #include "core/realise.hpp"
+#include "render_gles/light_shares.hpp"
 #include "render_gles/program.hpp"
 
 namespace lackwerk::gles {
@@ -59,6 +60,8 @@ class PaintGpu {
   /// The numbers the GPU sees, for tests and for the CPU model. Valid until the next update.
   [[nodiscard]] const core::PaintTextures& textures() const { return textures_; }
   [[nodiscard]] const core::AnalyticPaint& analytic() const { return realised_.analytic; }
+  /// core::flake_roughness at the present weights; 1 without flakes.
+  [[nodiscard]] double flake_roughness() const { return flake_m_; }
   /// True until the first successful update: there is nothing to draw yet.
   [[nodiscard]] bool pending() const { return weights_.base.empty(); }
 
@@ -85,5 +88,7 @@ class PaintGpu {
 /// Sets the analytic part's uniforms (what the program has of u_diffuse, u_lobe, u_inv_m, the indices). The program
 /// must be in use.
 void apply_analytic(const GlApi& gl, const Program& program, const core::AnalyticPaint& paint);
+/// Sets u_diffuse and u_lobe alone, each times its share of light_shares.hpp.
+void apply_shares(const GlApi& gl, const Program& program, const core::AnalyticPaint& paint, const LightShares& shares);
 
 }  // namespace lackwerk::gles

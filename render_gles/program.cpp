@@ -85,25 +85,35 @@ Features Features::canonical() const {
   if (f.stripes && f.surface != packs::SurfaceKind::paint) f.stripes = false;
   if (f.stripes) {
     const Features bare;
-    f = {.surface = surface, .diffuse = bare.diffuse, .path = ShaderPath::none, .stripes = true, .output = output};
+    f = {.surface = surface,
+         .diffuse = bare.diffuse,
+         .path = ShaderPath::none,
+         .stripes = true,
+         .orange_peel = orange_peel,
+         .output = output};
     return f;
   }
   if (f.surface != packs::SurfaceKind::paint) f.table = f.flakes = false;
-  if (f.surface != packs::SurfaceKind::floor || f.path != ShaderPath::filtered) f.floor_mirror = false;
-  if (f.path != ShaderPath::filtered) {
-    f.sparkle_lights = f.narrow = 0;
-    f.irradiance = false;
-  }
+  const bool looks_up = f.path == ShaderPath::filtered || f.path == ShaderPath::mirror;
+  if (f.path == ShaderPath::filtered) f.looked_up = 31;
+  if (!looks_up) f.looked_up = 0;
+  // No bits of what there is none of.
+  f.looked_up &= ((1 << f.lobes) - 1) | (f.flakes ? 8 : 0) | (f.diffuse ? 16 : 0);
+  if (f.surface != packs::SurfaceKind::floor || !looks_up) f.floor_mirror = false;
+  if (f.path != ShaderPath::filtered) f.sparkle_lights = 0;
+  if ((f.looked_up & 16) == 0) f.irradiance = false;
+  if (f.surface != packs::SurfaceKind::paint || f.path == ShaderPath::none || !f.coat) f.orange_peel = false;
   if (f.path != ShaderPath::sampled) f.still_flakes = false;
-  if (!f.diffuse && f.path == ShaderPath::filtered) f.irradiance = false;
   if (f.path != ShaderPath::filtered) f.diffuse = true;  // the directional model always has the term
   if (!f.flakes) {
     f.flake_lights = f.sparkle_lights = 0;
     f.still_flakes = false;
   }
   f.flake_lights = std::min(f.flake_lights, f.lights);
+  if (f.lights == 0) f.room_lights = false;
+  if (f.lights == 0 || !f.flakes) f.less_mean_flakes = false;
   if (!f.single_flakes()) f.flake_taps = f.flake_cells = 1;
-  f.narrow &= (1 << f.lobes) - 1;
+  f.narrow &= f.looked_up;
   return f;
 }
 
@@ -114,7 +124,7 @@ std::string Features::text() const {
   std::string out = surface_name(surface);
   if (stripes) return out + ", stripes";
   static constexpr std::array<const char*, 4> paths = {"no environment", "filtered environment", "sampled environment",
-                                                       "mirrored environment"};
+                                                       "environment beside lights"};
   out += std::string(", ") + paths[static_cast<std::size_t>(path)];
   if (lobes > 0) out += counted(lobes, "lobe");
   if (!diffuse) out += ", no diffuse part";
@@ -128,10 +138,13 @@ std::string Features::text() const {
     if (sparkle_lights > 0) out += counted(sparkle_lights, "sparkle light");
     if (flake_lights > 0) out += counted(flake_lights, "flake light");
   }
-  if (lights > 0) out += counted(lights, "directional light");
+  if (lights > 0) out += counted(lights, room_lights ? "environment light" : "directional light");
+  if (path == ShaderPath::mirror && looked_up != 0) out += ", some parts looked up";
+  if (less_mean_flakes) out += ", mean flakes looked up";
   if (visibility) out += ", visibility";
   if (irradiance) out += ", baked irradiance";
   if (floor_mirror) out += ", mirror image";
+  if (orange_peel) out += ", orange peel";
   if (output == ShaderOutput::linear) out += ", linear output";
   if (output == ShaderOutput::mirror_image) out += ", for the mirror image";
   if (output == ShaderOutput::subject) out += ", as a mask";
@@ -160,6 +173,11 @@ std::string fragment_source(const Features& features, bool fragment_highp) {
   text += define("NUM_LIGHTS", features.lights);
   text += define("FLAKE_LIGHTS", features.flake_lights);
   text += define("SPARKLE_LIGHTS", features.sparkle_lights);
+  text += define("ROOM_LIGHTS", features.room_lights ? 1 : 0);
+  text += define("LESS_MEAN_FLAKES", features.less_mean_flakes ? 1 : 0);
+  text += define("ORANGE_PEEL", features.orange_peel ? 1 : 0);
+  for (int k = 0; k < 5; ++k)
+    text += define(("LOOKUP" + std::to_string(k)).c_str(), (features.looked_up >> k & 1) != 0 ? 1 : 0);
   for (int k = 0; k < 3; ++k)
     text += define(("NARROW" + std::to_string(k)).c_str(), (features.narrow >> k & 1) != 0 ? 1 : 0);
   text += define("HAS_VISIBILITY", features.visibility ? 1 : 0);
@@ -172,8 +190,9 @@ std::string fragment_source(const Features& features, bool fragment_highp) {
   for (const char* file : {"paint_fetch.glsl", "surface_inputs.glsl", "environment.glsl", "surface_visible.glsl",
                            "paint_model.glsl", "display.glsl"})
     append(file);
-  if (features.path == ShaderPath::filtered) append("filtered_light.glsl");
+  if (features.path == ShaderPath::filtered || features.path == ShaderPath::mirror) append("filtered_light.glsl");
   if (features.path == ShaderPath::sampled) append("sampled_light.glsl");
+  if (features.orange_peel) append("orange_peel.glsl");
   append("surface_fragment.glsl");
   return text;
 }

@@ -21,7 +21,8 @@ namespace lackwerk::gles {
 /// "paint", "glass", ...: for messages.
 [[nodiscard]] const char* surface_name(packs::SurfaceKind kind);
 
-/// Where a surface's light from the environment comes from: PATH in surface_fragment.glsl.
+/// Where a surface's light from the environment comes from: PATH in surface_fragment.glsl. `mirror`: what lights cut
+/// from it leave over.
 enum class ShaderPath : int { none = 0, filtered = 1, sampled = 2, mirror = 3 };
 /// What the fragment shader writes.
 enum class ShaderOutput : int { display = 0, linear = 1, mirror_image = 2, subject = 3 };
@@ -38,15 +39,19 @@ struct Features {
   bool coat = false;
   bool refraction = false;
   ShaderPath path = ShaderPath::filtered;
-  int narrow = 0;             ///< bit k: lobe k may need environment levels below 2
-  int lights = 0;             ///< directional lights, [0, 4]
-  int flake_lights = 0;       ///< how many of them show single flakes; the others show the mean
-  int sparkle_lights = 0;     ///< lights of the environment that show single flakes on the filtered path, [0, 4]
-  bool still_flakes = false;  ///< single flakes on the sampled path
-  bool visibility = false;    ///< baked, per vertex
-  bool irradiance = false;    ///< baked, per vertex
+  int narrow = 0;            ///< bit k: lobe k may need environment levels below 2
+  int looked_up = 31;        ///< bits 0 to 2: lobes, 3: flakes, 4: diffuse; what the filtered and mirror paths look up
+  int lights = 0;            ///< directional lights, [0, 4]
+  bool room_lights = false;  ///< the lights stand on the room's wall and floor
+  bool less_mean_flakes = false;  ///< a share of the flakes' mean is looked up, and not the lights'
+  int flake_lights = 0;           ///< how many of them show single flakes; the others show the mean
+  int sparkle_lights = 0;         ///< lights of the environment that show single flakes on the filtered path, [0, 4]
+  bool still_flakes = false;      ///< single flakes on the sampled path
+  bool visibility = false;        ///< baked, per vertex
+  bool irradiance = false;        ///< baked, per vertex
   bool floor_mirror = false;
   bool stripes = false;
+  bool orange_peel = false;  ///< waves in the coat's mirror image
   ShaderOutput output = ShaderOutput::display;
   auto operator<=>(const Features&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <iterator>
 #include <map>
 
 #include "core/check.hpp"
@@ -16,21 +15,6 @@ namespace {
 /// The floor's mirror image is drawn this much smaller than the picture: the polished floor blurs it anyway.
 constexpr int mirror_reduction = 3;
 constexpr int smallest_mirror_px = 32;
-
-/// Directional lights of the mood and, on that path, of the environment's cut.
-std::vector<DirectionalLight> all_lights(const Lighting& lighting, const core::Environment& environment) {
-  std::vector<DirectionalLight> lights = lighting.lights;
-  if (lighting.quality.path == LightPath::lights) {
-    const std::vector<core::EnvironmentLight> cut = core::lights_of(environment, lighting.quality.cut_lights);
-    std::transform(cut.begin(), cut.end(), std::back_inserter(lights), [&](const core::EnvironmentLight& light) {
-      return DirectionalLight{light.direction, light.radiance * lighting.environment_gain};
-    });
-  }
-  std::stable_sort(lights.begin(), lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
-    return core::luminance_of(glm::dvec3(a.radiance)) > core::luminance_of(glm::dvec3(b.radiance));
-  });
-  return lights;
-}
 
 /// Boxes of the paint's triangles, gathered in cells of a grid by their middles.
 std::vector<Box> paint_cells(const packs::Scene& scene) {
@@ -105,7 +89,13 @@ Result<void> Renderer::update(const core::Weights& weights) {
 }
 
 Renderer::Frame Renderer::frame_of(const View& view, const Lighting& lighting, const Framebuffer& target) const {
-  return {view, lighting, target.width(), target.height(), target.texture(), revision_};
+  Frame frame{view, lighting, target.width(), target.height(), target.texture(), revision_};
+  // The strongest shows single flakes first.
+  std::stable_sort(frame.lighting.lights.begin(), frame.lighting.lights.end(),
+                   [](const DirectionalLight& a, const DirectionalLight& b) {
+                     return core::luminance_of(glm::dvec3(a.radiance)) > core::luminance_of(glm::dvec3(b.radiance));
+                   });
+  return frame;
 }
 
 bool Renderer::needs_draw(const View& view, const Lighting& lighting, const Framebuffer& target) const {
@@ -129,25 +119,72 @@ double Renderer::finest_level(const View& view, int height) const {
   return static_cast<double>(std::log2(std::max(texels, 1e-4f)) + 0.585f);
 }
 
-Renderer::Pass Renderer::moving_pass(const Frame& frame, std::vector<DirectionalLight>& lights) const {
+Renderer::Pass Renderer::moving_pass(const Frame& frame) const {
   const Quality& quality = frame.lighting.quality;
+  const std::vector<DirectionalLight>& lights = frame.lighting.lights;
   Pass pass;
   pass.path = quality.path == LightPath::none       ? ShaderPath::none
               : quality.path == LightPath::filtered ? ShaderPath::filtered
                                                     : ShaderPath::mirror;
-  lights = all_lights(frame.lighting, environment_);
-  pass.lights = lights;
+  pass.lights =
+      std::span(lights).first(std::min(lights.size(), static_cast<std::size_t>(usable_lights(context_.info()))));
   const bool single = (quality.flakes == FlakeMode::nearest || quality.flakes == FlakeMode::bilinear) &&
                       flakes_show(frame.view, frame.height, moving_contrast);
   pass.flake_lights = single ? quality.flake_lights : 0;
   if (single && pass.path == ShaderPath::filtered)
-    pass.sparkle_lights =
-        std::min({quality.sparkle_lights, static_cast<int>(sparkle_.size()),
-                  usable_sparkle_lights(context_.info(), static_cast<int>(frame.lighting.lights.size()))});
+    pass.sparkle_lights = std::min({quality.sparkle_lights, static_cast<int>(sparkle_.size()),
+                                    usable_sparkle_lights(context_.info(), static_cast<int>(lights.size()))});
   pass.detail = quality.coarse ? packs::detail_coarse : packs::detail_full;
-  pass.floor_mirror = quality.floor_mirror && pass.path == ShaderPath::filtered && !frame.lighting.stripes &&
+  pass.floor_mirror = quality.floor_mirror && pass.path != ShaderPath::none && !frame.lighting.stripes &&
                       mesh_.has(packs::SurfaceKind::floor);
   return pass;
+}
+
+std::vector<Renderer::Pass> Renderer::light_passes(const Frame& frame, std::vector<DirectionalLight>& cut) const {
+  const Pass whole = moving_pass(frame);
+  cut.clear();
+  const std::vector<core::EnvironmentLight> lights_of_room =
+      core::lights_of(environment_, frame.lighting.quality.cut_lights);
+  const double parts = effective_parts(lights_of_room);
+  for (const core::EnvironmentLight& light : lights_of_room)
+    cut.push_back({light.direction, light.radiance * frame.lighting.environment_gain});
+  const auto at_once = static_cast<std::size_t>(std::max(usable_lights(context_.info()), 1));
+  // The mood's lights are the stronger ones: single flakes are theirs first.
+  int flake_lights = whole.flake_lights;
+  std::vector<Pass> passes;
+  const auto add = [&](std::span<const DirectionalLight> lights, int of_cut) {
+    Pass pass = whole;
+    pass.lights = lights;
+    pass.cut = of_cut;
+    pass.parts = parts;
+    pass.flake_lights = std::min(flake_lights, static_cast<int>(lights.size()));
+    flake_lights -= pass.flake_lights;
+    passes.push_back(pass);
+  };
+  if (!whole.lights.empty()) add(whole.lights, 0);
+  for (std::size_t first = 0; first < cut.size(); first += at_once)
+    add(std::span(cut).subspan(first, std::min(at_once, cut.size() - first)), static_cast<int>(cut.size()));
+  // The cut's first pass brings the environment and the background, so it is drawn first.
+  if (!whole.lights.empty()) std::rotate(passes.begin(), passes.begin() + 1, passes.end());
+  for (std::size_t k = 1; k < passes.size(); ++k) {
+    passes[k].path = ShaderPath::none;
+    passes[k].floor_mirror = false;
+    passes[k].black = true;
+  }
+  return passes;
+}
+
+std::vector<Renderer::Pass> Renderer::passes_of(const Frame& frame, std::vector<DirectionalLight>& cut) const {
+  if (frame.lighting.quality.path == LightPath::lights && !frame.lighting.stripes) return light_passes(frame, cut);
+  return {moving_pass(frame)};
+}
+
+LightShares Renderer::shares_of(packs::SurfaceKind kind, const Pass& pass) const {
+  LightShares all{};
+  all.fill(1.0f);
+  if (pass.cut == 0) return all;
+  if (kind != packs::SurfaceKind::paint) return light_shares(packs::material_of(kind).surface, 1.0, pass.parts);
+  return paint_ ? light_shares(paint_->analytic(), paint_->flake_roughness(), pass.parts) : all;
 }
 
 std::vector<const MeshBuffers::Draw*> Renderer::order_of(const View& view, const Pass& pass, bool glass) const {
@@ -206,6 +243,11 @@ void Renderer::draw_pass(const Frame& frame, const Pass& pass, const Framebuffer
   gl_.DepthMask(GL_TRUE);
   gl_.Disable(GL_BLEND);
   gl_.Disable(GL_SCISSOR_TEST);
+  if (pass.strips > 1) {
+    const int from = target.height() * pass.strip / pass.strips, to = target.height() * (pass.strip + 1) / pass.strips;
+    gl_.Enable(GL_SCISSOR_TEST);
+    gl_.Scissor(0, from, target.width(), to - from);
+  }
   gl_.ClearColor(sky.x, sky.y, sky.z, sky.w);
   gl_.ClearDepthf(1.0f);
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -231,6 +273,7 @@ void Renderer::draw_pass(const Frame& frame, const Pass& pass, const Framebuffer
     gl_.DepthMask(GL_TRUE);
     gl_.Disable(GL_BLEND);
   }
+  if (pass.strips > 1) gl_.Disable(GL_SCISSOR_TEST);
   check_gl(gl_, "drawing a frame");
 }
 
@@ -250,42 +293,32 @@ void Renderer::draw_mirror(const Frame& frame) {
   draw_pass(frame, pass, *mirror_);
 }
 
-void Renderer::draw_cut_lights(const Frame& frame, const Framebuffer& target) {
-  std::vector<DirectionalLight> lights;
-  const Pass whole = moving_pass(frame, lights);
-  const auto at_once = static_cast<std::size_t>(usable_lights(context_.info()));
-  check_equal(ensure_accumulator(frame.width, frame.height).has_value(), true, "targets as large as the picture");
-  accumulator_->reset();
-  for (std::size_t first = 0; first < lights.size(); first += at_once) {
-    Pass pass = whole;
-    pass.lights = std::span(lights).subspan(first, std::min(at_once, lights.size() - first));
-    pass.flake_lights = std::max(0, whole.flake_lights - static_cast<int>(first));
-    pass.output = accumulator_->linear() ? ShaderOutput::linear : ShaderOutput::display;
-    pass.black = first > 0;
-    if (first > 0) pass.path = ShaderPath::none;
-    draw_pass(frame, pass, accumulator_->frame());
-    if (first == 0) {
-      accumulator_->add(screen_);
+void Renderer::add_passes(const Frame& frame, const std::vector<Pass>& passes, Accumulator& sum) {
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    Pass pass = passes[k];
+    pass.output = sum.linear() ? ShaderOutput::linear : ShaderOutput::display;
+    draw_pass(frame, pass, sum.frame());
+    if (k == 0) {
+      sum.add(screen_);
     } else {
-      accumulator_->add_to_last(screen_);
+      sum.add_to_last(screen_);
     }
   }
-  accumulator_->show(screen_, target, frame.lighting.dither, 1.0f);
-  refined_.reset();
 }
 
-void Renderer::draw_moving(const Frame& frame, ShaderOutput output, const Framebuffer& target) {
-  std::vector<DirectionalLight> lights;
-  Pass pass = moving_pass(frame, lights);
-  pass.output = output;
-  if (static_cast<int>(lights.size()) > usable_lights(context_.info()) && output == ShaderOutput::display &&
-      pass.path == ShaderPath::mirror) {
-    draw_cut_lights(frame, target);
+void Renderer::draw_moving(const Frame& frame, const Framebuffer& target) {
+  std::vector<DirectionalLight> cut;
+  const std::vector<Pass> passes = passes_of(frame, cut);
+  if (passes.front().floor_mirror) draw_mirror(frame);
+  if (passes.size() == 1) {
+    draw_pass(frame, passes.front(), target);
     return;
   }
-  pass.lights = pass.lights.first(std::min(lights.size(), static_cast<std::size_t>(usable_lights(context_.info()))));
-  if (pass.floor_mirror) draw_mirror(frame);
-  draw_pass(frame, pass, target);
+  check_equal(ensure_accumulator(frame.width, frame.height).has_value(), true, "targets as large as the picture");
+  accumulator_->reset();
+  add_passes(frame, passes, *accumulator_);
+  accumulator_->show(screen_, target, frame.lighting.dither, 1.0f);
+  refined_.reset();
 }
 
 void Renderer::draw(const View& view, const Lighting& lighting, const Framebuffer& target) {
@@ -303,14 +336,14 @@ void Renderer::draw(const View& view, const Lighting& lighting, const Framebuffe
       check_equal(made.has_value(), true, "a picture no larger than one that could be drawn");
       unfinished_ = std::move(*made);
     }
-    draw_moving(own, ShaderOutput::display, *unfinished_);
+    draw_moving(own, *unfinished_);
     if (lighting.quality.smooth_edges) {
       screen_.smooth(*unfinished_, target);
     } else {
       screen_.copy(unfinished_->texture(), target, 1.0f, ScreenPass::Blend::replace);
     }
   } else {
-    draw_moving(frame, ShaderOutput::display, target);
+    draw_moving(frame, target);
   }
   target.bind();
   left_out_flakes_ = !flakes_show(view, frame.height, moving_contrast);
@@ -321,10 +354,10 @@ void Renderer::draw(const View& view, const Lighting& lighting, const Framebuffe
 
 void Renderer::prepare(const View& view, const Lighting& lighting, const Framebuffer& target) {
   const Frame frame = frame_of(view, lighting, target);
-  std::vector<DirectionalLight> lights;
-  Pass pass = moving_pass(frame, lights);
-  pass.lights = pass.lights.first(std::min(lights.size(), static_cast<std::size_t>(usable_lights(context_.info()))));
-  for (const MeshBuffers::Draw& draw : mesh_.draws()) programs_.get(features_of(draw, lighting, pass));
+  std::vector<DirectionalLight> cut;
+  const std::vector<Pass> passes = passes_of(frame, cut);
+  for (const Pass& pass : passes)
+    for (const MeshBuffers::Draw& draw : mesh_.draws()) programs_.get(features_of(draw, lighting, pass));
 }
 
 GpuBytes Renderer::gpu_bytes() const {

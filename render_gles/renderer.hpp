@@ -19,6 +19,7 @@
 #include "render_gles/accumulator.hpp"
 #include "render_gles/framebuffer.hpp"
 #include "render_gles/image.hpp"
+#include "render_gles/light_shares.hpp"
 #include "render_gles/material_table.hpp"
 #include "render_gles/mesh_buffers.hpp"
 #include "render_gles/paint_gpu.hpp"
@@ -79,11 +80,19 @@ class Renderer {
   /// Compiles what draw would need for this lighting, so that the first frame is not late.
   void prepare(const View& view, const Lighting& lighting, const Framebuffer& target);
 
-  /// Adds one frame to the still picture of what draw() drew last into `target`, and shows it once it is good enough
-  /// (fading over from the moving picture). Returns whether more frames would improve it; false at once if anything
-  /// has changed since draw(). Error: no memory for the frame buffers.
-  [[nodiscard]] Result<bool> refine(const View& view, const Lighting& lighting, const Framebuffer& target,
-                                    int frames = still_frames);
+  /// What a refine() did.
+  struct Refined {
+    bool more = false;   ///< further calls would improve the picture
+    bool frame = false;  ///< a frame has been finished and added
+    bool shown = false;  ///< `target` has changed
+  };
+  /// Adds to the still picture of what draw() drew last into `target`, and shows it once it is good enough (fading over
+  /// from the moving picture). `strips`, in [1, max_strips]: a frame is drawn in so many calls, so that none takes
+  /// long; counts from the next frame on. Does nothing if anything has changed since draw(). Error: no memory for the
+  /// frame buffers.
+  [[nodiscard]] Result<Refined> refine(const View& view, const Lighting& lighting, const Framebuffer& target,
+                                       int frames = still_frames, int strips = 1);
+  static constexpr int max_strips = 16;
 
   /// A still picture of `samples` frames, in [1, Accumulator::max_frames], also left in `target`. 1 is one moving
   /// frame; below sampled_still_frames the moving picture is smoothed; from there on the environment is sampled.
@@ -138,10 +147,13 @@ class Renderer {
     int sparkle_lights = 0;
     bool still_flakes = false;
     bool floor_mirror = false;
+    int cut = 0;         ///< the lights are of a cut of the environment into so many; 0: they are the mood's
+    double parts = 1.0;  ///< effective_parts of that cut
     std::uint8_t detail = packs::detail_full;
-    glm::vec3 sample{0.0f};  ///< u, v, number of frames
-    bool mirrored = false;   ///< seen from below the floor, without the floor
-    bool black = false;      ///< clears to black instead of the backdrop: an addition to another pass
+    glm::vec3 sample{0.0f};     ///< u, v, number of frames
+    int strip = 0, strips = 1;  ///< the part of the picture's rows that is drawn
+    bool mirrored = false;      ///< seen from below the floor, without the floor
+    bool black = false;         ///< clears to black instead of the backdrop: an addition to another pass
   };
   /// Whether the paint is drawn with one lobe: no light needs the others.
   [[nodiscard]] static bool merges_lobes(const Lighting& lighting, const Pass& pass);
@@ -153,10 +165,18 @@ class Renderer {
                   const glm::mat4& clip);
   void draw_pass(const Frame& frame, const Pass& pass, const Framebuffer& target);
   void draw_mirror(const Frame& frame);
-  void draw_moving(const Frame& frame, ShaderOutput output, const Framebuffer& target);
-  void draw_cut_lights(const Frame& frame, const Framebuffer& target);
-  void draw_sampled(const Frame& frame, int index, int frames, Accumulator& sum);
-  [[nodiscard]] Pass moving_pass(const Frame& frame, std::vector<DirectionalLight>& lights) const;
+  void draw_moving(const Frame& frame, const Framebuffer& target);
+  void add_passes(const Frame& frame, const std::vector<Pass>& passes, Accumulator& sum);
+  /// Draws strip `strip` of `strips` of a still picture's frame; true when that finished it and added it to the sum.
+  bool add_sampled(const Frame& frame, int index, int frames, Accumulator& sum, int strip = 0, int strips = 1);
+  [[nodiscard]] Pass moving_pass(const Frame& frame) const;
+  /// What a moving picture is put together from; `cut` keeps the lights of a cut alive.
+  [[nodiscard]] std::vector<Pass> passes_of(const Frame& frame, std::vector<DirectionalLight>& cut) const;
+  [[nodiscard]] std::vector<Pass> light_passes(const Frame& frame, std::vector<DirectionalLight>& cut) const;
+  /// Whether a pass's lights stand on the room's wall and floor.
+  [[nodiscard]] bool in_room(const Pass& pass) const { return pass.cut > 0 && environment_.room_radius_mm > 0.0f; }
+  /// What the lights of this pass give of a surface; everything unless they are a cut.
+  [[nodiscard]] LightShares shares_of(packs::SurfaceKind kind, const Pass& pass) const;
   [[nodiscard]] Result<void> ensure_accumulator(int width, int height);
   [[nodiscard]] Frame frame_of(const View& view, const Lighting& lighting, const Framebuffer& target) const;
 
@@ -179,6 +199,7 @@ class Renderer {
   std::uint64_t revision_ = 0;  ///< rises with every change of scene or paint
   std::optional<Frame> drawn_;
   std::optional<Frame> refined_;  ///< what the accumulator's frames show
+  int strip_ = 0, strips_ = 1;    ///< of the frame that is being added
   Keep keep_;
   bool left_out_flakes_ = false;  ///< of the last frame: too small to show
   std::uint64_t draws_ = 0;

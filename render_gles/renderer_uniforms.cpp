@@ -49,9 +49,11 @@ Features Renderer::features_of(const MeshBuffers::Draw& part, const Lighting& li
   features.output = pass.output;
   features.lights = static_cast<int>(pass.lights.size());
   features.stripes = lighting.stripes && !pass.mirrored;
+  features.orange_peel = lighting.orange_peel_mrad > 0.0f && !pass.mirrored && context_.info().fragment_highp;
   features.visibility = part.visibility;
   features.irradiance = part.irradiance;
   features.floor_mirror = pass.floor_mirror;
+  features.room_lights = in_room(pass);
   const Quality& quality = lighting.quality;
   if (part.surface == packs::SurfaceKind::paint) {
     features.flakes = quality.flakes != FlakeMode::off;
@@ -76,6 +78,22 @@ Features Renderer::features_of(const MeshBuffers::Draw& part, const Lighting& li
     features.diffuse = material.diffuse != glm::dvec3(0.0);
     features.coat = material.coat_ior > 1.0;
     features.narrow = core::environment_level_of(0.7 * material.lobes[0].m) < core::first_stacked_level ? 1 : 0;
+  }
+  if (pass.cut > 0) {
+    // What neither lights nor look-ups show is left out.
+    const LightShares shares = shares_of(part.surface, pass);
+    features.looked_up = shares.front() < 1.0f ? 16 : 0;
+    int lit = 0;
+    for (int k = 0; k < features.lobes; ++k) {
+      const float share = shares[static_cast<std::size_t>(k) + 1];
+      if (share < 1.0f) features.looked_up |= 1 << k;
+      if (share > 0.0f) lit = k + 1;
+    }
+    if (shares.back() < 1.0f) features.looked_up |= 8;
+    features.less_mean_flakes = shares.back() < 1.0f;
+    const bool none = std::all_of(shares.begin(), shares.end(), [](float share) { return share <= 0.0f; });
+    if (none && features.flake_lights == 0) features.lights = 0;
+    if (features.path == ShaderPath::none) features.lobes = lit;
   }
   return features.canonical();
 }
@@ -108,18 +126,27 @@ void Renderer::apply_frame(const Program& program, const Frame& frame, const Pas
     vec4("u_mirror_step", {1.0f / width, 1.0f / height, mirror_blur * height / width, mirror_blur});
   }
   vec3("u_sample", pass.sample);
+  number("u_peel", lighting.orange_peel_mrad * 1e-3f);
+  number("u_peel_pixel", 1000.0f * pixel_size_per_mm(frame.view, frame.height));
 
-  std::vector<float> directions, radiances;
-  for (const DirectionalLight& light : pass.lights)
-    for (int c = 0; c < 3; ++c) {
-      directions.push_back(light.direction[c]);
-      radiances.push_back(light.radiance[c]);
-    }
+  // Lights of a cut stand on the wall, also those of the floor: a near floor is no handful of points, but its light is
+  // much the same everywhere. From the centre a piece of wall is seen squarely at the distance R: its strength there is
+  // R / R^2 with a normal R long, hence the factor R.
+  const bool room = in_room(pass);
+  const float radius = environment_.room_radius_mm * m_per_mm;
+  std::vector<glm::vec3> lights_at, radiances;
+  for (const DirectionalLight& light : pass.lights) {
+    lights_at.push_back(room ? environment_.centre_mm * m_per_mm + light.direction * radius : light.direction);
+    radiances.push_back(room ? light.radiance * radius : light.radiance);
+  }
   if (!pass.lights.empty()) {
     const auto count = static_cast<GLsizei>(pass.lights.size());
-    gl_.Uniform3fv(program.location("u_light_dir"), count, directions.data());
-    gl_.Uniform3fv(program.location("u_light"), count, radiances.data());
+    gl_.Uniform3fv(program.location("u_light_at"), count, &lights_at.front().x);
+    gl_.Uniform3fv(program.location("u_light"), count, &radiances.front().x);
   }
+  // One of n lights stands for 4 pi R^2 / n of the wall, a disc of radius 2 R / sqrt(n): nearer than half of that it is
+  // no point.
+  if (room) number("u_light_reach", radius / std::sqrt(static_cast<float>(pass.cut)));
   std::vector<float> places, glints;
   for (int k = 0; k < pass.sparkle_lights; ++k) {
     const core::EnvironmentLight& light = sparkle_[static_cast<std::size_t>(k)];
@@ -140,14 +167,23 @@ void Renderer::apply_material(const Program& program, packs::SurfaceKind kind, c
   const bool merged = kind == packs::SurfaceKind::paint && merges_lobes(frame.lighting, pass);
   const TermScales& scales = merged ? materials_.merged_scales() : materials_.scales(kind);
   gl_.Uniform1f(program.location("u_albedo_row"), merged ? MaterialTable::merged_row() : MaterialTable::row(kind));
-  gl_.Uniform1f(program.location("u_diffuse_scale"), scales.diffuse_scale);
-  gl_.Uniform4fv(program.location("u_albedo_scale"), 1, &scales.albedo_scale.x);
+  const LightShares shares = shares_of(kind, pass);
+  glm::vec4 looked_up = scales.albedo_scale;
+  if (pass.cut > 0)
+    for (int k = 0; k < 4; ++k) looked_up[k] *= 1.0f - shares[static_cast<std::size_t>(k) + 1];
+  gl_.Uniform4fv(program.location("u_albedo_scale"), 1, &looked_up.x);
+  gl_.Uniform1f(program.location("u_diffuse_scale"),
+                scales.diffuse_scale * (pass.cut > 0 ? 1.0f - shares.front() : 1.0f));
+  gl_.Uniform1f(program.location("u_less_mean"), 1.0f - shares.back());
   if (kind == packs::SurfaceKind::paint) {
-    if (paint_) paint_->apply(gl_, program);
+    if (!paint_) return;
+    paint_->apply(gl_, program);
+    if (pass.cut > 0) apply_shares(gl_, program, paint_->analytic(), shares);
     return;
   }
   const packs::Material& material = packs::material_of(kind);
   apply_analytic(gl_, program, material.surface);
+  if (pass.cut > 0) apply_shares(gl_, program, material.surface, shares);
   const glm::vec3 emission = material.emission * (pass.black ? 0.0f : frame.lighting.lamp_glow);
   gl_.Uniform3f(program.location("u_emission"), emission.x, emission.y, emission.z);
   gl_.Uniform1f(program.location("u_cover"), static_cast<float>(material.coverage));

@@ -29,49 +29,64 @@ Result<void> Renderer::ensure_accumulator(int width, int height) {
   return {};
 }
 
-void Renderer::draw_sampled(const Frame& frame, int index, int frames, Accumulator& sum) {
+bool Renderer::add_sampled(const Frame& frame, int index, int frames, Accumulator& sum, int strip, int strips) {
   Frame shifted = frame;
   shifted.view.jitter_px += halton_jitter(index);
   Quality& quality = shifted.lighting.quality;
   quality.coarse = false;
   quality.scale = 1.0f;
-  const ShaderOutput output = sum.linear() ? ShaderOutput::linear : ShaderOutput::display;
   const bool sampled = frames >= sampled_still_frames && quality.path == LightPath::filtered &&
                        context_.info().max_fragment_uniforms >= sampled_uniform_vectors && !frame.lighting.stripes;
   if (!sampled) {
-    draw_moving(shifted, output, sum.frame());
-    return;
+    std::vector<DirectionalLight> cut;
+    const std::vector<Pass> passes = passes_of(shifted, cut);
+    if (passes.front().floor_mirror) draw_mirror(shifted);
+    add_passes(shifted, passes, sum);
+    return true;
   }
   if (quality.flakes == FlakeMode::nearest) quality.flakes = FlakeMode::bilinear;
   quality.flake_cross_fade = true;
   quality.floor_mirror = true;
-  std::vector<DirectionalLight> lights;
-  Pass pass = moving_pass(shifted, lights);
-  if (pass.floor_mirror) draw_mirror(shifted);
+  Pass pass = moving_pass(shifted);
+  if (pass.floor_mirror && strip == 0) draw_mirror(shifted);
   const bool single =
       quality.flakes == FlakeMode::bilinear && flakes_show(shifted.view, shifted.height, still_contrast);
   pass.path = ShaderPath::sampled;
-  pass.output = output;
-  pass.flake_lights = single ? static_cast<int>(lights.size()) : 0;
+  pass.output = sum.linear() ? ShaderOutput::linear : ShaderOutput::display;
+  pass.flake_lights = single ? static_cast<int>(pass.lights.size()) : 0;
   pass.sparkle_lights = 0;
   pass.still_flakes = single;
   pass.sample = glm::vec3(spread_point(index), static_cast<float>(frames));
+  pass.strip = strip;
+  pass.strips = strips;
   draw_pass(shifted, pass, sum.frame());
+  if (strip + 1 < strips) return false;
+  sum.add(screen_);
+  return true;
 }
 
-Result<bool> Renderer::refine(const View& view, const Lighting& lighting, const Framebuffer& target, int frames) {
+Result<Renderer::Refined> Renderer::refine(const View& view, const Lighting& lighting, const Framebuffer& target,
+                                           int frames, int strips) {
   check_at_most(frames, Accumulator::max_frames, "frames of a still picture");
+  check_at_most(1, strips, "strips of a still picture's frame");
+  check_at_most(strips, max_strips, "strips of a still picture's frame");
   const Frame frame = frame_of(view, lighting, target);
-  if (drawn_ != frame || frames < 2) return false;
+  if (drawn_ != frame || frames < 2) return Refined{};
   if (refined_ != frame) {
     if (auto made = ensure_accumulator(frame.width, frame.height); !made) return tl::unexpected(made.error());
     accumulator_->reset();
     refined_ = frame;
+    strip_ = 0;
   }
   const int done = accumulator_->count();
-  if (done >= frames) return false;
-  draw_sampled(frame, done, frames, *accumulator_);
-  accumulator_->add(screen_);
+  if (done >= frames) return Refined{};
+  if (strip_ == 0) strips_ = strips;
+  if (!add_sampled(frame, done, frames, *accumulator_, strip_, strips_)) {
+    ++strip_;
+    target.bind();
+    return Refined{true, false, false};
+  }
+  strip_ = 0;
   // A quarter of the frames is gathered unseen; over the second quarter the picture fades from moving to still, so that
   // no step shows; from then on every frame is shown.
   const int fade_from = frames / 4, fade_to = std::max(frames / 2, fade_from + 1);
@@ -82,7 +97,7 @@ Result<bool> Renderer::refine(const View& view, const Lighting& lighting, const 
     accumulator_->show(screen_, target, lighting.dither, alpha);
   }
   target.bind();
-  return count < frames;
+  return Refined{count<frames, true, count> fade_from};
 }
 
 Image Renderer::subject(const View& view, const Framebuffer& target) {
@@ -108,10 +123,7 @@ Image Renderer::still(const View& view, const Lighting& lighting, const Framebuf
   const auto made = ensure_accumulator(frame.width, frame.height);
   check_equal(made.has_value(), true, "frame buffers of the size of one that exists");
   accumulator_->reset();
-  for (int k = 0; k < samples; ++k) {
-    draw_sampled(frame, k, samples, *accumulator_);
-    accumulator_->add(screen_);
-  }
+  for (int k = 0; k < samples; ++k) add_sampled(frame, k, samples, *accumulator_);
   accumulator_->show(screen_, target, lighting.dither, 1.0f);
   refined_.reset();
   return target.read();

@@ -1,15 +1,18 @@
 // All surfaces. Appended to prelude, paint_fetch.glsl, environment.glsl, paint_model.glsl, display.glsl, and
-// filtered_light.glsl or sampled_light.glsl.
+// filtered_light.glsl or sampled_light.glsl; orange_peel.glsl where ORANGE_PEEL is 1.
 //
 // Switches: SURFACE 0..9 (a packs::SurfaceKind as a number); PATH 0 (no environment), 1 (filtered), 2 (sampled),
-// 3 (the coat's mirror alone); NUM_LIGHTS 0..4 directional lights, FLAKE_LIGHTS of them with single flakes;
+// 3 (what lights cut from the environment leave over: the coat's mirror and sharp lobes, filtered); NUM_LIGHTS 0..4
+// lights, FLAKE_LIGHTS of them with single flakes; ROOM_LIGHTS 1 (the lights stand on the room), 0 (far away);
+// LESS_MEAN_FLAKES 1 (the environment shows a share of the flakes' mean, which lights must leave out);
 // SPARKLE_LIGHTS 0..4 lights of the environment whose single flakes are added to the filtered mean; STRIPES,
 // HAS_VISIBILITY, HAS_IRRADIANCE, FLOOR_MIRROR, OUTPUT 0 (display), 1 (scene-linear times exposure), 2 (for the floor's
 // mirror), 3 (a mask: white but for the floor), and those of paint_model.glsl.
 // Uniforms: vec4 u_frame (exposure; dither 0 or 1; level-0 texels per pixel and metre of distance; texels per metre);
-// vec4 u_backdrop (linear sRGB after exposure, into which the floor fades; lamp glow); vec3 u_light_dir[], u_light[]
-// (towards the light; E/pi); vec3 u_sparkle_at[] (points on the room, m, or directions where it is far away),
-// u_sparkle[] (E/pi); vec3 u_emission; float u_cover (glass).
+// vec4 u_backdrop (linear sRGB after exposure, into which the floor fades); vec3 u_light_at[], u_light[] (towards the
+// light, and E/pi; with ROOM_LIGHTS its place, m, and E/pi times the room's radius); float u_light_reach
+// (nearer than this, m, a light is no point); float u_less_mean; vec3 u_sparkle_at[] (points on the room, m, or
+// directions where it is far away), u_sparkle[] (E/pi); vec3 u_emission; float u_cover (glass).
 varying vec3 v_position;
 varying vec3 v_to_eye;
 varying vec3 v_normal;
@@ -20,8 +23,14 @@ varying vec3 v_irradiance;
 uniform float u_gain;  // of the mood, on the baked irradiance
 #endif
 #if NUM_LIGHTS > 0
-uniform vec3 u_light_dir[NUM_LIGHTS];
+uniform vec3 u_light_at[NUM_LIGHTS];
 uniform vec3 u_light[NUM_LIGHTS];
+#if ROOM_LIGHTS
+uniform float u_light_reach;
+#endif
+#if LESS_MEAN_FLAKES
+uniform float u_less_mean;
+#endif
 #endif
 #if SPARKLE_LIGHTS > 0
 uniform vec3 u_sparkle_at[SPARKLE_LIGHTS];
@@ -47,11 +56,51 @@ vec3 stripe_radiance(vec3 d) {
   return vec3(0.03 + 0.87 * clamp((s - 0.5) * 14.0 + 0.5, 0.0, 1.0));
 }
 
+#if SPARKLE_LIGHTS > 0 || (LESS_MEAN_FLAKES && NUM_LIGHTS > 0)
+// Both directions bent into the coat.
+Geometry inside_geometry(vec3 n, vec3 i, vec3 o) {
+#if HAS_REFRACTION
+  return paint_geometry(n, refract_into(i, n, u_refraction_ior), refract_into(o, n, u_refraction_ior));
+#else
+  return paint_geometry(n, i, o);
+#endif
+}
+// What the coat lets through to the flakes and back.
+float through_coat(float ci, float co) {
+#if HAS_COAT
+  return (1.0 - fresnel_dielectric(ci, u_coat_ior)) * (1.0 - fresnel_dielectric(co, u_coat_ior));
+#else
+  return 1.0;
+#endif
+}
+#endif
+
+#if NUM_LIGHTS > 0
 // One light on the paint. Written out per light in shade(), not as a loop: a compiler that does not unroll so long a
 // body would keep the flake code alive for lights that show none.
-vec3 light_on_paint(vec3 i, vec3 radiance, vec3 n, vec3 o, vec2 texel, float lod, float show_flakes) {
-  return radiance * (visible(i) * max(dot(n, i), 0.0) * paint_factor(n, i, o, texel, lod, show_flakes));
+vec3 light_on_paint(vec3 at, vec3 radiance, vec3 p, vec3 n, vec3 o, vec2 texel, float lod, float show_flakes) {
+#if ROOM_LIGHTS
+  // A piece of the wall, which faces the room's centre: what it sends falls with the square of the distance and with
+  // its own cosine.
+  vec3 d = at - p;
+  float away = length(d);
+  vec3 i = d / max(away, 1e-3);
+  away = max(away, u_light_reach);
+  radiance *= max(dot(at - u_room.xyz, i), 0.0) / (away * away);
+#else
+  vec3 i = at;
+#endif
+  float ci = dot(n, i);
+  vec3 rho = paint_factor(n, i, o, texel, lod, show_flakes);
+#if LESS_MEAN_FLAKES
+  if (ci > 0.0) {
+    Geometry g = inside_geometry(n, i, o);
+    rho -= flake_mean(g.theta_h, g.theta_i) * (u_less_mean * through_coat(ci, dot(n, o)));
+  }
+#endif
+  return radiance * (visible(i) * max(ci, 0.0) * rho);
 }
+#endif
 
 #if SPARKLE_LIGHTS > 0
 // Single flakes of one light less their mean, which the filtered environment already shows.
@@ -59,27 +108,25 @@ vec3 sparkle(vec3 at, vec3 radiance, vec3 p, vec3 n, vec3 o, vec2 texel, float l
   vec3 i = normalize(u_room.w > 0.0 ? at - p : at);
   float ci = dot(n, i);
   if (ci <= 0.0) return vec3(0.0);
-#if HAS_REFRACTION
-  Geometry g = paint_geometry(n, refract_into(i, n, u_refraction_ior), refract_into(o, n, u_refraction_ior));
-#else
-  Geometry g = paint_geometry(n, i, o);
-#endif
-  float through = 1.0;
-#if HAS_COAT
-  through = (1.0 - fresnel_dielectric(ci, u_coat_ior)) * (1.0 - fresnel_dielectric(dot(n, o), u_coat_ior));
-#endif
+  Geometry g = inside_geometry(n, i, o);
   return radiance * ((flake_factor(g.theta_h, g.theta_i, texel, lod) - flake_mean(g.theta_h, g.theta_i)) *
-                     (through * ci * visible(i)));
+                     (through_coat(ci, dot(n, o)) * ci * visible(i)));
 }
 #endif
 
 // Returns linear colour and coverage (premultiplied). p in metres.
 vec4 shade(vec3 n, vec3 o, vec3 p, float distance_m) {
   vec3 r = mirror_direction(n, o);
+  float co = max(dot(n, o), 0.0);
+#if ORANGE_PEEL
+  vec3 coat_normal = peeled_normal(n, p, distance_m, co);
+#endif
 #if STRIPES
+#if ORANGE_PEEL
+  r = mirror_direction(coat_normal, o);
+#endif
   return vec4(stripe_radiance(r), 1.0);
 #else
-  float co = max(dot(n, o), 0.0);
   vec2 texel = vec2(0.0);
   float lod = 0.0;
 #if SURFACE == 0 && HAS_FLAKES && SINGLE_FLAKES
@@ -87,11 +134,11 @@ vec4 shade(vec3 n, vec3 o, vec3 p, float distance_m) {
   lod = surface_lod(distance_m, co, u_frame.z);
 #endif
   vec3 sum = vec3(0.0);
-#if PATH == 1
+#if PATH == 1 || PATH == 3
   vec3 towards_r = room_direction(p, r);
   vec3 towards_n = room_direction(p, n);
   float seen = visible(r);
-#if HAS_DIFFUSE
+#if HAS_DIFFUSE && LOOKUP4
 #if HAS_IRRADIANCE
   sum += filtered_diffuse(co, v_irradiance * u_gain);
 #else
@@ -117,18 +164,16 @@ vec4 shade(vec3 n, vec3 o, vec3 p, float distance_m) {
   shine *= seen;
 #endif
   sum += shine;
-#if HAS_COAT
-  sum += environment_sharp(towards_r) * (fresnel_dielectric(co, u_coat_ior) * seen);
-#endif
 #endif
 #if PATH == 2
   sum += sampled_environment(p, n, o, texel, lod);
-#if HAS_COAT
-  sum += environment_sharp(room_direction(p, r)) * (fresnel_dielectric(co, u_coat_ior) * visible(r));
 #endif
+#if PATH > 0 && HAS_COAT
+  vec3 c = r;
+#if ORANGE_PEEL
+  c = mirror_direction(coat_normal, o);
 #endif
-#if PATH == 3 && HAS_COAT
-  sum += environment_sharp(room_direction(p, r)) * (fresnel_dielectric(co, u_coat_ior) * visible(r));
+  sum += environment_sharp(room_direction(p, c)) * (fresnel_dielectric(co, u_coat_ior) * visible(r));
 #endif
 #if SPARKLE_LIGHTS > 0
   vec3 glints = sparkle(u_sparkle_at[0], u_sparkle[0], p, n, o, texel, lod);
@@ -144,16 +189,19 @@ vec4 shade(vec3 n, vec3 o, vec3 p, float distance_m) {
   sum = max(sum + glints, vec3(0.0));
 #endif
 #if NUM_LIGHTS > 0
-  sum += light_on_paint(u_light_dir[0], u_light[0], n, o, texel, lod, FLAKE_LIGHTS > 0 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_at[0], u_light[0], p, n, o, texel, lod, FLAKE_LIGHTS > 0 ? 1.0 : 0.0);
 #if NUM_LIGHTS > 1
-  sum += light_on_paint(u_light_dir[1], u_light[1], n, o, texel, lod, FLAKE_LIGHTS > 1 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_at[1], u_light[1], p, n, o, texel, lod, FLAKE_LIGHTS > 1 ? 1.0 : 0.0);
 #endif
 #if NUM_LIGHTS > 2
-  sum += light_on_paint(u_light_dir[2], u_light[2], n, o, texel, lod, FLAKE_LIGHTS > 2 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_at[2], u_light[2], p, n, o, texel, lod, FLAKE_LIGHTS > 2 ? 1.0 : 0.0);
 #endif
 #if NUM_LIGHTS > 3
-  sum += light_on_paint(u_light_dir[3], u_light[3], n, o, texel, lod, FLAKE_LIGHTS > 3 ? 1.0 : 0.0);
+  sum += light_on_paint(u_light_at[3], u_light[3], p, n, o, texel, lod, FLAKE_LIGHTS > 3 ? 1.0 : 0.0);
 #endif
+#endif
+#if LESS_MEAN_FLAKES && NUM_LIGHTS > 0 && OUTPUT != 1
+  sum = max(sum, vec3(0.0));
 #endif
 #if SURFACE == 6 || SURFACE == 7
   sum += u_emission;

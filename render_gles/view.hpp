@@ -76,6 +76,9 @@ struct Lighting {
   glm::vec3 backdrop{0.02f, 0.021f, 0.023f};  ///< linear sRGB after exposure; where the floor fades to
   bool stripes = false;                       ///< body designer's stripe reflections instead of paint
   bool dither = true;                         ///< half a step of noise against banding
+  /// Waves in the clear coat's mirror image: rms tilt of its normal, milliradians, [0, 20]. 0 = none, and not compiled
+  /// in. A car from the line has about 1 to 5. Needs 32-bit fragment floats; without them it is left out.
+  float orange_peel_mrad = 0.0f;
   Quality quality;
   bool operator==(const Lighting&) const = default;
 };

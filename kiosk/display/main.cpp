@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "kiosk/display/config_text.hpp"
 #include "kiosk/display/loop.hpp"
 #include "kiosk/display/options.hpp"
 
@@ -22,6 +23,10 @@ int run(int argc, char** argv) {
   if (!options) return report(options.error());
   if (options->help || options->version) {
     std::fputs(options->help ? lackwerk::kiosk::help_text() : "lackwerk-kiosk " LACKWERK_VERSION "\n", stdout);
+    return exit_done;
+  }
+  if (options->sample_config) {
+    std::fputs(lackwerk::kiosk::config_text().c_str(), stdout);
     return exit_done;
   }
   std::signal(SIGINT, on_signal);

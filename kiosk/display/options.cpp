@@ -5,7 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <string_view>
+#include <vector>
 
+#include "kiosk/display/stage.hpp"
 #include "render_gles/accumulator.hpp"
 #include "render_gles/governor.hpp"
 
@@ -35,9 +38,14 @@ std::string rung_names() {
 }
 
 enum Option {
-  pack = 1,
+  config_file = 1,
+  pack,
   scene,
   platform,
+  connector,
+  rotation,
+  test_pattern,
+  sample_config,
   core_es2,
   size,
   frames,
@@ -52,38 +60,61 @@ enum Option {
   version
 };
 
+/// The value of --config, wherever it stands; null if it is not given.
+const char* config_named(int argc, char** argv) {
+  const char* named = nullptr;
+  constexpr std::string_view word = "--config";
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view given = argv[k];
+    if (given == word && k + 1 < argc) named = argv[k + 1];
+    if (given.starts_with("--config=")) named = argv[k] + word.size() + 1;
+  }
+  return named;
+}
+
 }  // namespace
 
 const char* help_text() {
-  return "Usage: lackwerk-kiosk --pack PACK.lwp --scene SCENE.lws [options]\n"
-         "Shows a pack's paints on a scene and morphs between them.\n\n"
-         "  --pack PACK.lwp         paints to show (required)\n"
-         "  --scene SCENE.lws       what to show them on (required)\n"
-         "  --platform NAME         surfaceless (EGL, default) or osmesa (software); both draw without a display\n"
+  return "Usage: lackwerk-kiosk [--config kiosk.toml] [--pack PACK.lwp]... [--scene SCENE.lws] [options]\n"
+         "Shows a pack's paints on a scene and morphs between them. Options stand over the configuration file.\n\n"
+         "  --config FILE           configuration (kiosk.toml); --sample-config prints one with every key and default\n"
+         "  --pack PACK.lwp         paints to show (needed here or in the file)\n"
+         "  --scene SCENE.lws       what to show them on (needed here or in the file)\n"
+         "  --platform NAME         auto (default: the first of kms, dumb, fbdev that can be had), kms, dumb, fbdev;\n"
+         "                          surfaceless (EGL) and osmesa (software) draw without a display\n"
+         "  --connector NAME        show on this connector (HDMI-A-1) instead of the first connected one\n"
+         "  --rotation DEGREES      turn the picture clockwise by 0, 90, 180 or 270\n"
+         "  --test-pattern          show the panel's test pattern instead of the picture\n"
          "  --core-es2 NAME         draw as the weakest OpenGL ES 2.0 driver would: no extensions, the promised "
          "limits, and\n"
          "                          highp or only mediump floats in fragment shaders\n"
-         "  --size WxH              picture size in pixels (default 1280x720)\n"
-         "  --input-script FILE     play a tour (tests/tours/*.tour) instead of waiting for input\n"
-         "  --frames N              run N frames on a virtual clock of 30 a second, then end;\n"
-         "                          without it: real time, until the tour ends or SIGTERM\n"
-         "  --record DIR            write every frame to DIR/000000.png and so on\n"
+         "  --size WxH              picture size in pixels without a display (default 1280x720)\n"
+         "  --input-script FILE     play a tour (tests/tours/*.tour), then end\n"
+         "  --frames N              without a display: run N frames on a virtual clock of 30 a second, then end;\n"
+         "                          with one: end after N pictures. Without it: until SIGTERM\n"
+         "  --record DIR            write every frame to DIR/000000.png and so on (needs --frames)\n"
          "  --record-samples N      samples a pixel of recorded frames, 1 (default: as shown) to 64\n"
          "  --quality NAME          how moving pictures are drawn: auto (default; holds the frame time), or best, "
          "fine,\n"
          "                          good, plain, lean, soft, least\n"
          "  --frame-ms N            frame time that auto holds, 1 to 1000 ms (default 62)\n"
          "  --still-frames N        frames a picture that does not change is refined with, 0 (never) to 256 (default "
-         "64)\n"
+         "128)\n"
          "  --screenshot OUT.png    write the last picture in still quality\n"
          "  --help, --version\n\n"
+         "With RUNTIME_DIRECTORY set (as systemd does), status.json is kept there: see docs/kiosk.md.\n"
          "Exit codes: 0 done, 1 the run failed, 2 usage.\n";
 }
 
 Result<Options> parse_options(int argc, char** argv) {
-  static constexpr std::array<::option, 16> known{{{"pack", required_argument, nullptr, pack},
+  static constexpr std::array<::option, 21> known{{{"config", required_argument, nullptr, config_file},
+                                                   {"pack", required_argument, nullptr, pack},
                                                    {"scene", required_argument, nullptr, scene},
                                                    {"platform", required_argument, nullptr, platform},
+                                                   {"connector", required_argument, nullptr, connector},
+                                                   {"rotation", required_argument, nullptr, rotation},
+                                                   {"test-pattern", no_argument, nullptr, test_pattern},
+                                                   {"sample-config", no_argument, nullptr, sample_config},
                                                    {"core-es2", required_argument, nullptr, core_es2},
                                                    {"size", required_argument, nullptr, size},
                                                    {"frames", required_argument, nullptr, frames},
@@ -98,35 +129,58 @@ Result<Options> parse_options(int argc, char** argv) {
                                                    {"version", no_argument, nullptr, version},
                                                    {nullptr, 0, nullptr, 0}}};
   Options options;
+  std::vector<std::string> named_packs;
+  if (const char* file = config_named(argc, argv)) {
+    auto config = read_config(file);
+    if (!config) return tl::unexpected(config.error());
+    options.config = std::move(*config);
+  }
   optind = 0;  // glibc: start afresh, so that tests may parse more than once
   opterr = 0;
   for (int found; (found = getopt_long(argc, argv, "", known.data(), nullptr)) != -1;) {
     switch (found) {
+      case config_file:
+        break;  // read before the others, so that they stand over it
       case pack:
-        options.pack = optarg;
+        named_packs.emplace_back(optarg);
         break;
       case scene:
-        options.scene = optarg;
+        options.config.scene = optarg;
         break;
+      case connector:
+        options.config.output.connector = optarg;
+        break;
+      case rotation: {
+        const auto degrees = read_count("--rotation", optarg, 0, 270);
+        const auto turned = degrees ? rotation_of(*degrees) : std::nullopt;
+        if (!turned) return usage("--rotation", "'" + std::string(optarg) + "' is no rotation", "0, 90, 180 or 270");
+        options.config.output.rotation = *turned;
+        break;
+      }
+      case test_pattern:
+        options.config.output.test_pattern = true;
+        break;
+      case sample_config:
+        options.sample_config = true;
+        return options;
       case platform:
-        if (std::strcmp(optarg, "surfaceless") == 0)
-          options.backend = gles::Backend::egl_surfaceless;
-        else if (std::strcmp(optarg, "osmesa") == 0)
-          options.backend = gles::Backend::osmesa;
+        if (const auto named = platform_of(optarg))
+          options.config.output.platform = *named;
         else
-          return usage("--platform", "unknown platform '" + std::string(optarg) + "'", "use surfaceless or osmesa");
+          return usage("--platform", "unknown platform '" + std::string(optarg) + "'",
+                       "use auto, kms, dumb, fbdev, surfaceless or osmesa");
         break;
       case core_es2: {
         const auto parsed = gles::parse_core_es2(optarg);
         if (!parsed)
           return usage("--core-es2", "unknown precision '" + std::string(optarg) + "'", "use highp or mediump");
-        options.core_es2 = *parsed;
+        options.config.output.context.core_es2 = *parsed;
         break;
       }
       case size: {
         auto parsed = parse_size(optarg);
         if (!parsed) return tl::unexpected(parsed.error());
-        options.size = *parsed;
+        options.config.output.size_px = {parsed->width, parsed->height};
         break;
       }
       case frames: {
@@ -151,20 +205,21 @@ Result<Options> parse_options(int argc, char** argv) {
         break;
       }
       case quality:
-        options.quality = optarg;
-        if (options.quality != "auto" && gles::find_rung(options.quality) == nullptr)
-          return usage("--quality", "unknown quality '" + options.quality + "'", "use one of " + rung_names());
+        options.config.picture.quality = optarg;
+        if (options.config.picture.quality != "auto" && gles::find_rung(options.config.picture.quality) == nullptr)
+          return usage("--quality", "unknown quality '" + options.config.picture.quality + "'",
+                       "use one of " + rung_names());
         break;
       case frame_ms: {
         auto count = read_count("--frame-ms", optarg, 1, max_frame_ms);
         if (!count) return tl::unexpected(count.error());
-        options.frame_ms = *count;
+        options.config.picture.frame_ms = *count;
         break;
       }
       case still_frames: {
         auto count = read_count("--still-frames", optarg, 0, gles::Accumulator::max_frames);
         if (!count) return tl::unexpected(count.error());
-        options.still_frames = *count;
+        options.config.picture.still_frames = *count;
         break;
       }
       case help:
@@ -178,8 +233,18 @@ Result<Options> parse_options(int argc, char** argv) {
     }
   }
   if (optind < argc) return usage(argv[optind], "is not an option", "see --help");
-  if (options.pack.empty()) return usage("--pack", "no paint pack given", "--pack PACK.lwp");
-  if (options.scene.empty()) return usage("--scene", "no scene given", "--scene SCENE.lws");
+  if (!named_packs.empty()) options.config.packs = std::move(named_packs);
+  if (options.config.packs.empty())
+    return usage("--pack", "no paint pack given", "--pack PACK.lwp, or packs in --config");
+  if (options.config.scene.empty())
+    return usage("--scene", "no scene given", "--scene SCENE.lws, or scene in --config");
+  if (!options.record.empty() && !options.frames)
+    return usage("--record", "records frames of a virtual clock", "give --frames N too");
+  if (!options.config.icc.empty()) {
+    auto profile = read_icc(options.config.icc);
+    if (!profile) return tl::unexpected(profile.error());
+    options.config.output.profile = std::move(*profile);
+  }
   return options;
 }
 

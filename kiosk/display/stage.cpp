@@ -16,21 +16,37 @@ bool read_edge(const char*& at, const char* end, int& edge) {
 
 }  // namespace
 
+Result<void> Stage::set_up(int width, int height) {
+  if (scene_.cameras.empty())
+    return fail(scene_.name, "cameras", "the scene has no camera", "rebuild it with 'lackwerk scene build'");
+  if (auto sized = resize(width, height); !sized) return sized;
+  renderer_ = std::make_unique<gles::Renderer>(*context_);
+  renderer_->set_scene(scene_);
+  return renderer_->set_paint(pack_.paint());
+}
+
+Result<void> Stage::resize(int width, int height) {
+  auto framebuffer = gles::Framebuffer::create(*context_, width, height);
+  if (!framebuffer) return tl::unexpected(framebuffer.error());
+  framebuffer_ = std::make_unique<gles::Framebuffer>(std::move(*framebuffer));
+  return {};
+}
+
 Result<std::unique_ptr<Stage>> Stage::create(gles::Backend backend, int width, int height, packs::PaintPack pack,
                                              packs::Scene scene, const gles::ContextSettings& settings) {
-  if (scene.cameras.empty())
-    return fail(scene.name, "cameras", "the scene has no camera", "rebuild it with 'lackwerk scene build'");
-  // The constructor is private, so make_unique cannot be used.
-  std::unique_ptr<Stage> stage(new Stage(std::move(pack), std::move(scene)));
   auto context = gles::create_context(backend, settings);
   if (!context) return tl::unexpected(context.error());
-  stage->context_ = std::move(*context);
-  auto framebuffer = gles::Framebuffer::create(*stage->context_, width, height);
-  if (!framebuffer) return tl::unexpected(framebuffer.error());
-  stage->framebuffer_ = std::make_unique<gles::Framebuffer>(std::move(*framebuffer));
-  stage->renderer_ = std::make_unique<gles::Renderer>(*stage->context_);
-  stage->renderer_->set_scene(stage->scene_);
-  if (auto taken = stage->renderer_->set_paint(stage->pack_.paint()); !taken) return tl::unexpected(taken.error());
+  auto stage = create(**context, width, height, std::move(pack), std::move(scene));
+  if (stage) (*stage)->own_context_ = std::move(*context);
+  return stage;
+}
+
+Result<std::unique_ptr<Stage>> Stage::create(gles::Context& context, int width, int height, packs::PaintPack pack,
+                                             packs::Scene scene) {
+  // The constructor is private, so make_unique cannot be used.
+  std::unique_ptr<Stage> stage(new Stage(std::move(pack), std::move(scene)));
+  stage->context_ = &context;
+  if (auto ready = stage->set_up(width, height); !ready) return tl::unexpected(ready.error());
   return stage;
 }
 

@@ -1,7 +1,7 @@
-// A stage: one context, one framebuffer, one renderer, with a pack and a scene on it.
+// A stage: a context, one framebuffer, one renderer, with a pack and a scene on it.
 //
 // Why it exists: the kiosk and the tools that draw set up the same four things in the same order and must take them
-// down in the reverse one. Owns them all; one GL thread.
+// down in the reverse one. Owns them all, but for a context that was given; one GL thread.
 #pragma once
 
 #include <filesystem>
@@ -24,6 +24,13 @@ class Stage {
                                                              packs::PaintPack pack, packs::Scene scene,
                                                              const gles::ContextSettings& settings = {});
 
+  /// The same on somebody else's context, which must outlive the stage and be current.
+  [[nodiscard]] static Result<std::unique_ptr<Stage>> create(gles::Context& context, int width, int height,
+                                                             packs::PaintPack pack, packs::Scene scene);
+
+  /// Another picture size; the old picture is lost. Error: framebuffer refused by the driver; the old one stays.
+  [[nodiscard]] Result<void> resize(int width, int height);
+
   [[nodiscard]] const packs::PaintPack& pack() const { return pack_; }
   [[nodiscard]] const packs::Scene& scene() const { return scene_; }
   [[nodiscard]] gles::Context& context() { return *context_; }
@@ -35,7 +42,10 @@ class Stage {
 
   packs::PaintPack pack_;
   packs::Scene scene_;
-  std::unique_ptr<gles::Context> context_;
+  [[nodiscard]] Result<void> set_up(int width, int height);
+
+  std::unique_ptr<gles::Context> own_context_;
+  gles::Context* context_ = nullptr;
   std::unique_ptr<gles::Framebuffer> framebuffer_;
   std::unique_ptr<gles::Renderer> renderer_;
 };

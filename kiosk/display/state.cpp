@@ -103,6 +103,14 @@ State::Changes State::apply(const input::Control& event) {
     case ControlKind::zoom:
       if (event.values.size() == 1 && std::isfinite(event.values[0]) && event.values[0] > 0.0) zoom(event.values[0]);
       break;
+    case ControlKind::turn:
+    case ControlKind::press:
+    case ControlKind::release:
+    case ControlKind::touch_down:
+    case ControlKind::touch_move:
+    case ControlKind::touch_up:
+    case ControlKind::touch_cancel:
+      break;  // what these mean is for Gestures to say
   }
   changes.view = camera_.eye_mm != eye_before;
   return changes;

@@ -14,6 +14,7 @@
 #include "kiosk/tools/output.hpp"
 #include "kiosk/tools/reference_render.hpp"
 #include "kiosk/tools/render_options.hpp"
+#include "render_gles/accumulator.hpp"
 #include "render_gles/governor.hpp"
 
 namespace lackwerk::tools {
@@ -28,6 +29,7 @@ struct RenderOptions {
   ReferenceSettings reference;
   std::string rung, path, mask;
   int cut_lights = 16;
+  float orange_peel_mrad = 0.0f;
 };
 
 /// The three groups from the command line; groups not given follow --weights, which defaults to the first paint.
@@ -61,6 +63,7 @@ gles::Lighting read_lighting(const RenderOptions& options, const packs::Camera& 
   if (options.path == "lights") lighting.quality.path = gles::LightPath::lights;
   if (options.path == "none") lighting.quality.path = gles::LightPath::none;
   lighting.quality.cut_lights = options.cut_lights;
+  lighting.orange_peel_mrad = options.orange_peel_mrad;
   if (options.flakes == "off") lighting.quality.flakes = gles::FlakeMode::off;
   if (options.flakes == "mean") lighting.quality.flakes = gles::FlakeMode::mean;
   if (options.flakes == "nearest") lighting.quality.flakes = gles::FlakeMode::nearest;
@@ -151,7 +154,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"moving", "still"}))
       ->capture_default_str();
   command->add_option("--samples", options->samples, "samples a pixel of still quality")
-      ->check(CLI::Range(1, 1024))
+      ->check(CLI::Range(1, gles::Accumulator::max_frames))
       ->capture_default_str();
   command->add_option("--flakes", options->flakes, "off, mean, nearest or bilinear (default)")
       ->check(CLI::IsMember({"off", "mean", "nearest", "bilinear"}));
@@ -169,6 +172,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--lights", options->cut_lights, "lights cut from the environment on --path lights")
       ->check(CLI::IsMember({1, 4, 16, 64}))
       ->capture_default_str();
+  add_orange_peel_option(*command, options->orange_peel_mrad);
   command->add_option("--mask", options->mask,
                       "PNG to write: white where the subject is, black on floor and background");
   command->add_option("-o,--out", options->out, "PNG to write")->required();

@@ -1,5 +1,8 @@
 #include "kiosk/tools/render_options.hpp"
 
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <charconv>
 
@@ -59,6 +62,15 @@ Result<gles::Backend> parse_backend(const std::string& name) {
   if (name == "egl") return gles::Backend::egl_surfaceless;
   if (name == "osmesa") return gles::Backend::osmesa;
   return fail("", "--backend", "unknown backend '" + name + "'", "use egl or osmesa", ErrorKind::usage);
+}
+
+void add_orange_peel_option(CLI::App& command, float& milliradians) {
+  constexpr float roughest_mrad = 20.0f;  // over a degree: no paint shop lets that pass
+  command
+      .add_option("--orange-peel", milliradians,
+                  "waves in the clear coat: rms tilt of its mirror image's normal in milliradians (a car has 1 to 5)")
+      ->check(CLI::Range(0.0f, roughest_mrad))
+      ->capture_default_str();
 }
 
 Result<packs::Camera> find_camera(const packs::Scene& scene, const std::string& name) {

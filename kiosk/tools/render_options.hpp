@@ -10,6 +10,10 @@
 #include "packs/scene.hpp"
 #include "render_gles/context.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace lackwerk::tools {
 
 /// "0.2,0.3,0.5" to numbers. Error (usage): not numbers, or not `count` of them. `option` names the option.
@@ -21,6 +25,9 @@ namespace lackwerk::tools {
 
 /// "egl" or "osmesa". Error (usage): anything else.
 [[nodiscard]] Result<gles::Backend> parse_backend(const std::string& name);
+
+/// Adds --orange-peel to a command that draws: see gles::Lighting::orange_peel_mrad.
+void add_orange_peel_option(CLI::App& command, float& milliradians);
 
 /// The camera of that name; empty: the first. Error (usage): names those there are.
 [[nodiscard]] Result<packs::Camera> find_camera(const packs::Scene& scene, const std::string& name);

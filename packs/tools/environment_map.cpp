@@ -1,28 +1,22 @@
 #include "packs/tools/environment_map.hpp"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <utility>
 
+#include "packs/tools/picture_file.hpp"
+
 namespace lackwerk::packs {
 namespace {
 
-constexpr int max_width = 16384;
-
-Result<void> check_spec(const OIIO::ImageSpec& spec, const std::string& file) {
-  const std::string size = std::to_string(spec.width) + "x" + std::to_string(spec.height);
-  if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.width > max_width || spec.height > max_width / 2 + 1)
-    return fail(file, "size", size + " is not supported", "use a lat-long map of at most 16384x8192 pixels");
-  if (spec.nchannels < 1 || spec.nchannels > 4)
-    return fail(file, "channels", std::to_string(spec.nchannels) + " channels", "save it as RGB");
-  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-      spec.height != spec.full_height)
-    return fail(file, "data window", "is not the whole picture", "save it uncropped");
-  return {};
-}
+constexpr int max_width = 16384, max_height = max_width / 2 + 1;
+constexpr PictureLimits map_limits{max_width,
+                                   max_height,
+                                   std::size_t{max_width} * max_height,
+                                   4,
+                                   "use a lat-long map of at most 16384x8192 pixels",
+                                   "the file is damaged: fetch it again"};
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
@@ -47,23 +41,14 @@ Result<EnvironmentMap> read_environment_map(const std::filesystem::path& path) {
   const std::string ending = extension_of(path);
   if (ending != ".hdr" && ending != ".exr")
     return fail(file, "format", "is no HDR map", "use a lat-long map in .hdr or .exr", ErrorKind::usage);
-  const auto input = OIIO::ImageInput::open(file);
-  if (!input) {
-    const std::string reason = OIIO::geterror();
-    return fail(file, "", "cannot be read" + (reason.empty() ? "" : ": " + reason), "check the path and the format");
-  }
-  const OIIO::ImageSpec spec = input->spec();
-  if (auto ok = check_spec(spec, file); !ok) return tl::unexpected(ok.error());
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  const std::size_t count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  std::vector<float> values(count * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
-    return fail(file, "pixels", "cannot be read: " + input->geterror(), "the file is damaged: fetch it again");
-
-  EnvironmentMap out{{file, spec.width, spec.height, {}}, {}};
+  const auto picture = read_picture(path, map_limits);
+  if (!picture) return tl::unexpected(picture.error());
+  const auto channels = static_cast<std::size_t>(picture->channels);
+  const std::size_t count = picture->values.size() / channels;
+  EnvironmentMap out{{file, picture->width, picture->height, {}}, {}};
   out.map.pixels.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const float* v = &values[k * channels];
+    const float* v = &picture->values[k * channels];
     out.map.pixels.push_back(channels < 3 ? glm::vec3(v[0]) : glm::vec3(v[0], v[1], v[2]));
   }
   const auto repairs = core::repair(out.map);  // its messages name the file

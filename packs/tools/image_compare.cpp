@@ -1,19 +1,22 @@
 #include "packs/tools/image_compare.hpp"
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
 #include "core/colour.hpp"
+#include "packs/tools/picture_file.hpp"
 
 namespace lackwerk::packs {
 namespace {
 
-constexpr int max_edge = 16384;
-constexpr std::size_t max_pixels = 64'000'000;
+constexpr PictureLimits picture_limits{16384,
+                                       16384,
+                                       64'000'000,
+                                       16,
+                                       "use at most 16384 pixels an edge and 64 million in all",
+                                       "the file is damaged: make it again"};
 
 std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
@@ -25,50 +28,25 @@ std::array<float, 256> make_decode_table() {
   return table;
 }
 
-Result<void> check_spec(const OIIO::ImageSpec& spec, const std::string& file) {
-  if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.width > max_edge || spec.height > max_edge ||
-      static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) > max_pixels)
-    return fail(file, "size", size_text(spec.width, spec.height) + " is not supported",
-                "use at most 16384 pixels an edge and 64 million in all");
-  if (spec.nchannels < 1 || spec.nchannels > 16)
-    return fail(file, "channels", std::to_string(spec.nchannels) + " channels", "save it as RGB");
-  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-      spec.height != spec.full_height)
-    return fail(file, "data window", "is not the whole picture", "save it uncropped");
-  return {};
-}
-
 }  // namespace
 
 Result<LinearImage> read_image(const std::filesystem::path& path) {
   const std::string file = path.string();
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;  // or PNG colours come back multiplied by their alpha
-  const auto input = OIIO::ImageInput::open(file, &config);
-  if (!input) {
-    const std::string reason = OIIO::geterror();
-    return fail(file, "", "cannot be read" + (reason.empty() ? "" : ": " + reason), "check the path and the format");
-  }
-  const OIIO::ImageSpec spec = input->spec();
-  if (auto ok = check_spec(spec, file); !ok) return tl::unexpected(ok.error());
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  LinearImage out{spec.width, spec.height, {}};
-  const std::size_t count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  std::vector<float> values(count * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
-    return fail(file, "", "cannot be read: " + input->geterror(), "the file is damaged: make it again");
-
-  const bool encoded = !spec.format.is_floating_point();
-  const bool bytes = spec.format == OIIO::TypeDesc::UINT8;
+  // Unassociated, or PNG colours come back multiplied by their alpha.
+  const auto picture = read_picture(path, picture_limits, true);
+  if (!picture) return tl::unexpected(picture.error());
+  const auto channels = static_cast<std::size_t>(picture->channels);
+  LinearImage out{picture->width, picture->height, {}};
+  const std::size_t count = picture->values.size() / channels;
   const std::array<float, 256> table = make_decode_table();
   const auto decode = [&](float v) {
-    if (!encoded) return v;
-    if (bytes) return table[static_cast<std::size_t>(std::clamp(std::lround(v * 255.0f), 0l, 255l))];
+    if (picture->is_linear) return v;
+    if (picture->is_bytes) return table[static_cast<std::size_t>(std::clamp(std::lround(v * 255.0f), 0l, 255l))];
     return static_cast<float>(core::srgb_decode(static_cast<double>(v)));
   };
   out.pixels.resize(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const float* v = &values[k * channels];
+    const float* v = &picture->values[k * channels];
     const glm::vec3 pixel =
         channels < 3 ? glm::vec3(decode(v[0])) : glm::vec3(decode(v[0]), decode(v[1]), decode(v[2]));
     if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y) || !std::isfinite(pixel.z))

@@ -25,8 +25,15 @@ struct Model {
   bool is_gltf = false;  ///< metres, y up
 };
 
+/// What is read at all. Reading takes up to 100 bytes of memory a triangle before it can be counted, and up to 300
+/// where it is few enough to go on.
+struct ModelLimits {
+  std::uintmax_t bytes = std::uintmax_t{1} << 30;  ///< of the file, without others that it names
+  std::size_t triangles = 10'000'000;              ///< with every node's copy
+};
+
 /// Nodes are applied, polygons triangulated, equal vertices joined; points, lines, textures and everything else that is
 /// no surface is left out.
-[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path);
+[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path, const ModelLimits& limits = {});
 
 }  // namespace lackwerk::packs

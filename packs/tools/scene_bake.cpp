@@ -20,7 +20,6 @@ using Model = core::PaintModel<double>;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr float lift_mm = 1.5f;  // off the surface, so that a coarse facet does not shadow its own vertices
-constexpr float floor_reach_mm = 6000.0f;
 constexpr std::size_t vertices_a_turn = 256;
 
 /// What all vertices share.
@@ -34,7 +33,6 @@ struct Surroundings {
 
 /// What one vertex gets; irradiance as it is, for the range is only known at the end.
 struct Lit {
-  std::uint8_t openness = 255;
   Visibility visibility = open_visibility;
   glm::vec3 irradiance{0.0f};
   float fit_error = 0.0f;
@@ -53,7 +51,7 @@ class VertexBaker {
   Lit bake(const glm::vec3& position, const glm::vec3& normal) {
     const NormalFrame frame = frame_around(glm::dvec3(normal));
     Lit out;
-    out.openness = look_around(position + normal * lift_mm, frame);
+    look_around(position + normal * lift_mm, frame);
     out.visibility = around_.fit.fit(seen_, frame);
     gather(glm::dvec3(position), frame, out);
     return out;
@@ -64,22 +62,17 @@ class VertexBaker {
     return frame.tangent * d.x + frame.bitangent * d.y + frame.normal * d.z;
   }
 
-  /// Fills `seen_`; returns the ambient openness.
-  std::uint8_t look_around(const glm::vec3& from, const NormalFrame& frame) {
+  /// Fills `seen_`.
+  void look_around(const glm::vec3& from, const NormalFrame& frame) {
     const auto& rays = around_.fit.rays();
-    double open = 0.0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const glm::vec3 d(in_scene(rays[i].direction, frame));
       seen_[i] = around_.blockers.blocked(from, d) ? 0.0f : 1.0f;
-      bool reaches_floor = false;
       if (seen_[i] > 0.0f && around_.floor && d.z < -1e-4f) {
         const float t = std::max(from.z, 0.0f) / -d.z;
         seen_[i] = around_.floor->at(from.x + t * d.x, from.y + t * d.y);
-        reaches_floor = t < floor_reach_mm;
       }
-      if (seen_[i] > 0.0f && !reaches_floor) open += rays[i].share;
     }
-    return static_cast<std::uint8_t>(std::clamp(std::lround(255.0 * open), 0L, 255L));
   }
 
   /// What arrives through the fit, and how far that is from what was traced.
@@ -155,7 +148,6 @@ BakeReport bake_scene(Scene& scene, const BakeSettings& settings, const BakeProg
     MeshPart& part = scene.parts[k];
     const std::size_t count = part.positions_mm.size();
     check_equal(part.normals.size(), count, "one normal per vertex");
-    part.ambient_occlusion.resize(count);
     part.visibility.resize(count);
     irradiance[k].resize(count);
     errors[k].resize(count);
@@ -169,7 +161,6 @@ BakeReport bake_scene(Scene& scene, const BakeSettings& settings, const BakeProg
     VertexBaker baker(around);
     for (std::size_t v = turn.first; v < turn.last; ++v) {
       const Lit lit = baker.bake(part.positions_mm[v], part.normals[v]);
-      part.ambient_occlusion[v] = lit.openness;
       part.visibility[v] = lit.visibility;
       irradiance[turn.part][v] = lit.irradiance;
       errors[turn.part][v] = lit.fit_error;

@@ -1,7 +1,7 @@
 // What light does around the car, baked once into the vertices.
 //
 // Why it exists: the kiosk's renderer has no ray tracing, but a car without a contact shadow floats, and a wheel well
-// that mirrors the sky glows. Fills `ambient_occlusion`, `visibility` and `irradiance` of every part and the scene's
+// that mirrors the sky glows. Fills `visibility` and `irradiance` of every part and the scene's
 // `irradiance_range`, from the scene's own environment. Needs Embree 3. Deterministic: every vertex has its own fixed
 // set of rays, so the number of worker threads does not change the result. Call it from one thread; it starts and joins
 // its own.
@@ -30,7 +30,7 @@ struct BakeReport {
 using BakeProgress = std::function<void(double)>;
 
 /// Glass and floor block nothing. Where the scene has a floor, directions that end on it see it as bright as the share
-/// of the sky that reaches it there; ambient occlusion counts it as closed.
+/// of the sky that reaches it there.
 BakeReport bake_scene(Scene& scene, const BakeSettings& settings = {}, const BakeProgress& progress = {});
 
 }  // namespace lackwerk::packs

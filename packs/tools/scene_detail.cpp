@@ -35,7 +35,6 @@ MeshPart with_triangles(const MeshPart& part, const std::vector<std::uint32_t>& 
   out.detail = part.detail;
   out.positions_mm = picked(part.positions_mm, vertices);
   out.normals = picked(part.normals, vertices);
-  out.ambient_occlusion = picked(part.ambient_occlusion, vertices);
   out.visibility = picked(part.visibility, vertices);
   out.irradiance = picked(part.irradiance, vertices);
   return out;

@@ -1,16 +1,20 @@
 #include "packs/tools/scene_import.hpp"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <sstream>
 
 #include "packs/scene_pack.hpp"
 #include "packs/tools/car/floor.hpp"
 #include "packs/tools/car/patch.hpp"
 #include "packs/tools/import_materials.hpp"
 #include "packs/tools/model_reader.hpp"
+#include "packs/tools/model_reduce.hpp"
 #include "packs/tools/scene_detail.hpp"
 
 namespace lackwerk::packs {
@@ -73,6 +77,14 @@ Patch placed(const ModelMesh& mesh, const Placement& placement, double crease_de
   return car::with_normals(patch, crease_deg);
 }
 
+/// Triangles that share vertices follow each other: a GPU shades fewer vertices, and the writer, which splits parts
+/// for 16-bit indices in the order of their triangles, has fewer to repeat.
+MeshPart with_near_order(MeshPart part) {
+  const std::vector<std::uint32_t> before = part.indices;
+  meshopt_optimizeVertexCache(part.indices.data(), before.data(), before.size(), part.positions_mm.size());
+  return part;
+}
+
 /// One part, however large: splitting for 16-bit indices is the pack writer's work.
 MeshPart part_of(const Patch& patch, const std::string& name, SurfaceKind kind) {
   MeshPart part;
@@ -105,22 +117,6 @@ std::size_t count_vertices(const std::vector<MeshPart>& parts) {
   return count;
 }
 
-/// Fits the parts into what a pack takes; false where leaving out vertices was not enough.
-bool fit_into_pack(std::vector<MeshPart>& parts) {
-  constexpr float any_error_mm = 1e6f;
-  constexpr int tries = 4;
-  for (int k = 0; k < tries; ++k) {
-    const double vertices = static_cast<double>(count_vertices(parts));
-    const double triangles = static_cast<double>(count_triangles(parts));
-    const double share =
-        std::min(static_cast<double>(budget_vertices) / vertices, static_cast<double>(budget_triangles) / triangles);
-    if (share >= 1.0) return true;
-    for (MeshPart& part : parts)
-      part = coarser(part, {static_cast<std::size_t>(share * static_cast<double>(triangles_of(part))), any_error_mm});
-  }
-  return count_vertices(parts) <= budget_vertices && count_triangles(parts) <= budget_triangles;
-}
-
 /// A floor with cells fine enough for the model's shadow, at both levels.
 void add_floor(std::vector<MeshPart>& parts) {
   glm::vec3 reach(0.0f);
@@ -150,6 +146,15 @@ void add_floor(std::vector<MeshPart>& parts) {
   add(detail_coarse);
 }
 
+void say_what_was_left_out(const ModelReduction& reduction, std::vector<std::string>& repairs) {
+  if (reduction.after == reduction.before) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "simplified from " << reduction.before << " to " << reduction.after << " triangles, at most about "
+       << reduction.error_mm << " mm off";
+  repairs.push_back(text.str());
+}
+
 void say_what_was_mended(const Mended& mended, std::vector<std::string>& repairs) {
   if (mended.empty_faces > 0)
     repairs.push_back(counted(mended.empty_faces, "face", "faces") + " without area left out");
@@ -168,7 +173,7 @@ Result<ImportedScene> import_scene(const std::filesystem::path& path, const Impo
     if (progress) progress(done, what);
   };
   tell(0.0, "reading the model");
-  const auto model = read_model(path);
+  const auto model = read_model(path, settings.limits);
   if (!model) return tl::unexpected(model.error());
   const auto kinds = assign_kinds(model->materials, settings.paint, settings.kinds, file);
   if (!kinds) return tl::unexpected(kinds.error());
@@ -196,15 +201,18 @@ Result<ImportedScene> import_scene(const std::filesystem::path& path, const Impo
   say_what_was_mended(mended, out.repairs);
   if (parts.empty()) return fail(file, "faces", "none has any area", "export the model again");
   tell(0.7, "simplifying");
-  const std::size_t triangles = count_triangles(parts);
-  if (!fit_into_pack(parts))
-    return fail(file, "faces", "too many for a scene pack even after simplifying", "simplify the model in its editor");
-  if (const std::size_t left = count_triangles(parts); left < triangles)
-    out.repairs.push_back("simplified from " + std::to_string(triangles) + " to " + std::to_string(left) +
-                          " triangles");
+  say_what_was_left_out(reduce_parts(parts, settings.kept_triangles, settings.crease_deg), out.repairs);
+  for (MeshPart& part : parts) part = with_near_order(std::move(part));
+  const std::size_t vertices = count_vertices(parts), kept = count_triangles(parts);
+  if (vertices > budget_vertices || kept > budget_triangles)
+    return fail(file, "faces",
+                std::to_string(kept) + " triangles with " + std::to_string(vertices) +
+                    " vertices are left after simplifying, of at most " + std::to_string(budget_triangles) + " and " +
+                    std::to_string(budget_vertices),
+                "simplify the model in its editor, with vertices merged");
+  tell(0.9, "coarse twins");
   out.scene.name = path.stem().string().substr(0, 200);
   out.scene.cameras = framed_cameras(parts);
-  const std::size_t kept = count_triangles(parts);
   for (MeshPart& part : parts) {
     if (kept <= twin_above_triangles) {
       out.scene.parts.push_back(std::move(part));

@@ -14,11 +14,13 @@
 #include "core/error.hpp"
 #include "packs/scene.hpp"
 #include "packs/tools/import_placement.hpp"
+#include "packs/tools/model_reader.hpp"
 
 namespace lackwerk::packs {
 
-inline constexpr std::uintmax_t max_model_bytes = std::uintmax_t{2} << 30;
-inline constexpr std::size_t max_model_triangles = 10'000'000;
+/// 1280 x 720 has 0.9 million pixels: more triangles than `kept_triangles` show nothing, and at 34 bytes a vertex and 6
+/// a triangle they take 23 MB of a weak machine's memory.
+inline constexpr std::size_t usual_kept_triangles = 1'000'000;
 
 struct ImportSettings {
   std::string paint;                                       ///< material that is painted; required
@@ -26,6 +28,8 @@ struct ImportSettings {
   PlacementWish placement;                                 ///< in_metres and up_is_y are set by the format
   bool floor = true;                                       ///< a showroom floor under it
   double crease_deg = 40.0;                                ///< sharper edges stay sharp where normals are made
+  ModelLimits limits;                                      ///< larger models are refused
+  std::size_t kept_triangles = usual_kept_triangles;       ///< larger models are simplified, and that is said
 };
 
 struct ImportedMaterial {

@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/edit_distance.hpp"
 #include "core/error.hpp"
 #include "core/paint.hpp"
 
@@ -42,22 +43,6 @@ inline constexpr std::uintmax_t max_toml_bytes = 1u << 20;
     return fail(path.string(), "line " + std::to_string(error.source().begin.line), std::string(error.description()),
                 "mend the TOML syntax");
   }
-}
-
-/// Levenshtein's edit distance, for "did you mean".
-[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
-    }
-  }
-  return row[b.size()];
 }
 
 /// The first error of one document.

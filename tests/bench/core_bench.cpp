@@ -1,13 +1,16 @@
 // Medians of the kernels that the figures in the documents speak of. Run by scripts/bench; asserts nothing.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "core/analysis/flake_clusters.hpp"
 #include "core/analysis/interpolation.hpp"
 #include "core/analysis/transport.hpp"
+#include "core/directional_albedo.hpp"
 #include "core/paint_model.hpp"
+#include "core/paint_textures.hpp"
 #include "core/rank_table.hpp"
 #include "core/realise.hpp"
 #include "tests/unit/random_flakes.hpp"
@@ -61,6 +64,33 @@ void realise_all_rows(benchmark::State& state) {
   }
 }
 BENCHMARK(realise_all_rows)->Arg(2)->Arg(3)->Arg(5)->Unit(benchmark::kMillisecond);
+
+/// 0: all weights move, as on the kiosk's slider; 1: the flakes' alone.
+void albedo_tables(benchmark::State& state) {
+  const auto data = real_data(2);
+  const auto paint = data.view();
+  AnalyticPaint analytic;
+  analytic.diffuse = glm::dvec3(0.05);
+  analytic.lobes = {Lobe{glm::dvec3(0.07), 0.38, 1.0}, Lobe{glm::dvec3(0.1), 0.17, 0.9},
+                    Lobe{glm::dvec3(0.03), 0.05, 0.5}};
+  analytic.coat_ior = analytic.refraction_ior = 1.5;
+  std::array<PaintTextures, 2> textures{make_static_textures(paint), make_static_textures(paint)};
+  for (std::size_t k = 0; k < 2; ++k) {
+    RealisedPaint realised;
+    const double w = k == 0 ? 0.3 : 0.6;
+    realise(paint, Weights::uniform({w, 1.0 - w}), realised);
+    update_textures(paint, realised, textures[k]);
+  }
+  AlbedoTable table;
+  std::size_t turn = 0;
+  for (auto _ : state) {
+    turn = 1 - turn;
+    if (state.range(0) == 0) analytic.coat_ior = turn == 0 ? 1.5 : 1.49;
+    directional_albedo(paint, analytic, textures[turn], table);
+    benchmark::DoNotOptimize(table.rows.data());
+  }
+}
+BENCHMARK(albedo_tables)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 void rank_table(benchmark::State& state) {
   const auto data = real_data(3);

@@ -208,6 +208,8 @@ std::vector<gles::Features> richest_programs(bool highp) {
         f.lights = lights;
         f.flake_lights = highp ? lights : 0;
         f.sparkle_lights = highp ? gles::usable_sparkle_lights(info, lights) : 0;
+        f.room_lights = f.less_mean_flakes = path != gles::ShaderPath::filtered;
+        f.orange_peel = highp;  // 16 bits cannot hold its phases: see view.hpp
         out.push_back(f.canonical());
         f.irradiance = f.floor_mirror = false;
         out.push_back(f.canonical());
@@ -244,10 +246,10 @@ TEST(CoreResources, ProgramsFitTheSmallestDriver) {
 }
 
 TEST(CoreResources, NoWordBeyondTheLanguage) {
-  for (const char* file :
-       {"surface_vertex.glsl", "surface_fragment.glsl", "surface_inputs.glsl", "surface_visible.glsl",
-        "paint_fetch.glsl", "paint_model.glsl", "environment.glsl", "display.glsl", "filtered_light.glsl",
-        "sampled_light.glsl", "screen_vertex.glsl", "screen_copy.glsl", "screen_resolve.glsl", "screen_smooth.glsl"})
+  for (const char* file : {"surface_vertex.glsl", "surface_fragment.glsl", "surface_inputs.glsl",
+                           "surface_visible.glsl", "paint_fetch.glsl", "paint_model.glsl", "environment.glsl",
+                           "display.glsl", "filtered_light.glsl", "sampled_light.glsl", "screen_vertex.glsl",
+                           "screen_copy.glsl", "screen_resolve.glsl", "screen_smooth.glsl", "orange_peel.glsl"})
     for (const char* word : {"dFdx", "dFdy", "fwidth", "texture2DLod", "texture2DGrad", "#extension", "textureCube",
                              "gl_FragDepth", "gl_FragData", "while"})
       EXPECT_EQ(gles::shader_text(file).find(word), std::string_view::npos) << file << " uses " << word;

@@ -8,6 +8,7 @@
 
 #include "core/flake_contrast.hpp"
 #include "core/paint_model.hpp"
+#include "tests/unit/one_slice_paint.hpp"
 
 namespace lackwerk::core {
 namespace {
@@ -48,7 +49,7 @@ TEST(DirectionalAlbedo, AllPartsTogetherAreTheIntegral) {
     for (const int column : {9, 16, 24, 31}) {
       const double root = (column + 0.5) / albedo_columns;
       glm::dvec3 sum(0.0);
-      for (const AlbedoRow& row : table) sum += glm::dvec3(row.albedo[static_cast<std::size_t>(column)]);
+      for (const AlbedoRow& row : table.rows) sum += glm::dvec3(row.albedo[static_cast<std::size_t>(column)]);
       const glm::dvec3 truth = shown_under_even_light(paint, root * root);
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(sum[c], truth[c], (refraction > 1.0 ? 0.02 : 0.01) * truth[c])
@@ -85,6 +86,36 @@ TEST(DirectionalAlbedo, MergingKeepsTheEnergyAndStaysBetween) {
     EXPECT_GE(one.level[k], std::min(table[1].level[k], table[2].level[k]) - 1e-3f);
     EXPECT_LE(one.level[k], std::max(table[1].level[k], table[2].level[k]) + 1e-3f);
   }
+}
+
+TEST(DirectionalAlbedo, ATableThatIsReusedEqualsAFreshOne) {
+  const QuantisedCuboid dark{{0, 100, 32768, 32768, 32768, 32768}}, bright{{60000, 65535, 32000, 34000, 32000, 33000}};
+  const testing::FlakeRow few{{dark, bright}, {990, 10}}, many{{dark, bright}, {700, 300}};
+  const testing::OneSlicePaint a(few, few, 1), b(many, many, 1);
+  AlbedoTable reused;
+  const auto expect_fresh = [&](const testing::OneSlicePaint& flakes, const AnalyticPaint& analytic, const char* what) {
+    AlbedoTable fresh;
+    directional_albedo(flakes.paint, analytic, flakes.textures, fresh);
+    directional_albedo(flakes.paint, analytic, flakes.textures, reused);
+    for (std::size_t term = 0; term < fresh.rows.size(); ++term)
+      EXPECT_TRUE(reused[term] == fresh[term]) << what << term;
+    EXPECT_EQ(reused.source.flake_m, flake_roughness(flakes.paint, flakes.textures)) << what;
+  };
+  AnalyticPaint paint = coated(1.5);
+  expect_fresh(a, paint, "first ");
+  const AlbedoRow lobe = reused[1], flakes = reused[4];
+  expect_fresh(b, paint, "other flakes ");
+  EXPECT_TRUE(reused[1] == lobe);
+  EXPECT_FALSE(reused[4] == flakes);
+  paint.lobes[1].s *= 2.0;
+  expect_fresh(b, paint, "stronger lobe ");
+  paint.coat_ior = 1.3;
+  expect_fresh(b, paint, "other coat ");
+  paint.diffuse = glm::dvec3(0.0);
+  expect_fresh(b, paint, "nothing diffuse ");
+  directional_albedo(coated(1.5), reused);
+  EXPECT_TRUE(reused[4] == AlbedoRow()) << "no flakes";
+  expect_fresh(a, coated(1.5), "flakes again ");
 }
 
 TEST(FlakeContrast, CalmLevelLiesBetweenTheLevelsAround) {

@@ -10,6 +10,7 @@
 
 #include "core/gaussian.hpp"
 #include "core/paint_model.hpp"
+#include "tests/unit/one_slice_paint.hpp"
 #include "tests/unit/random_flakes.hpp"
 
 namespace lackwerk::core {
@@ -20,42 +21,20 @@ using Model = PaintModel<double>;
 constexpr int edge = random_edge;
 constexpr double texel_count = double(edge) * edge;
 
-/// 200 flakes of one grey each and one black, in one slice at (0, 0): every colour names its tuple.
-struct Greys {
-  std::vector<QuantisedCuboid> clusters;
-  std::vector<std::uint32_t> begin{0, 200, 201}, mass;
-  std::vector<std::uint8_t> index;
-  InterpolatablePaint paint;
-  RealisedPaint realised;
-  PaintTextures textures;
-  Model model;
-  Greys() {
-    for (std::uint16_t t = 0; t < 200; ++t) {
-      const auto grey = static_cast<std::uint16_t>(300 * t);
-      clusters.push_back({{grey, grey, 32768, 32768, 32768, 32768}});
-      mass.push_back(t < 100 ? 150u : t < 190 ? 50u : 20u);  // rare ones are bright
-      index.push_back(static_cast<std::uint8_t>(t));
-    }
-    clusters.push_back({{0, 0, 32768, 32768, 32768, 32768}});
-    for (std::uint32_t& m : mass) paint.row_mass += m;
-    mass.push_back(paint.row_mass);
-    index.push_back(0);
-    paint.layout = {12, {0, 1}};
-    paint.level_count = 2;
-    paint.texel_mm = 0.05f;
-    paint.level0_texels = 2;
-    paint.range = {{0.0f, -100.0f, -100.0f}, {200.0f, 100.0f, 100.0f}};
-    paint.tuple_begin = begin;
-    paint.mass = mass;
-    paint.random_seed = 11;
-    paint.paints.push_back({{}, {}, begin, clusters, index, {}});
-    realise(paint, Weights::uniform({1.0}), realised);
-    textures = make_static_textures(paint);
-    const AnalyticPaint analytic = realised.analytic;
-    update_textures(paint, realised, textures);
-    bind_model(paint, analytic, textures, model);
+/// 200 flakes of one grey each, in one slice at (0, 0), so that every colour names its tuple; far away one black.
+testing::OneSlicePaint greys() {
+  testing::FlakeRow near, far;
+  std::uint32_t sum = 0;
+  for (std::uint16_t t = 0; t < 200; ++t) {
+    const auto grey = static_cast<std::uint16_t>(300 * t);
+    near.boxes.push_back({{grey, grey, 32768, 32768, 32768, 32768}});
+    near.mass.push_back(t < 100 ? 150u : t < 190 ? 50u : 20u);  // rare ones are bright
+    sum += near.mass.back();
   }
-};
+  far.boxes.push_back({{0, 0, 32768, 32768, 32768, 32768}});
+  far.mass.push_back(sum);
+  return {near, far, 11};
+}
 
 /// Random values of a whole texture's texels at these angles, sorted.
 std::vector<double> gaussians(Model& model, double fh, double fi, double level = 0.0) {
@@ -104,7 +83,7 @@ TEST(FlakeTwinkle, DepthIsTheRootOfTheUpperTail) {
 }
 
 TEST(FlakeTwinkle, TextureHoldsEveryQuantileOnceAndItsNeighbour) {
-  const Greys source;
+  const testing::OneSlicePaint source = greys();
   std::vector<int> values;
   for (int y = 0; y < edge; ++y)
     for (int x = 0; x < edge; ++x) {
@@ -124,7 +103,7 @@ TEST(FlakeTwinkle, TextureHoldsEveryQuantileOnceAndItsNeighbour) {
 // The text's steps: the neighbour in z w is the texel a cell further on looks at, and no two cells and levels share
 // one.
 TEST(FlakeTwinkle, EveryCellAndLevelLooksElsewhere) {
-  const Greys source;
+  const testing::OneSlicePaint source = greys();
   Model model = source.model;
   for (int h = 0; h < 3; ++h) {
     const auto here = model.random_pair({5, 7}, 2, h, 1), next = model.random_pair({5, 7}, 2, h + 1, 1);
@@ -157,7 +136,7 @@ TEST(FlakeTwinkle, EveryCellAndLevelLooksElsewhere) {
 }
 
 TEST(FlakeTwinkle, NoAngleChangesTheDistributionOfRanks) {
-  Greys source;
+  testing::OneSlicePaint source = greys();
   source.model.u_flake_cells = {1.5, 0.75};
   // Corners, edges and middles of cells, at several levels.
   for (const auto& [ch, ci, level] : {std::array{0.0, 0.0, 0.0}, std::array{0.5, 0.0, 0.0}, std::array{2.5, 0.5, 1.0},
@@ -178,7 +157,7 @@ TEST(FlakeTwinkle, NoAngleChangesTheDistributionOfRanks) {
 }
 
 TEST(FlakeTwinkle, CellsAreIndependentAndBlendedByTheirCosine) {
-  Greys source;
+  testing::OneSlicePaint source = greys();
   source.model.u_flake_cells = {1.0, 1.0};
   const auto at = [&](double h, double i) { return gaussians(source.model, h, i); };
   const auto origin = at(3.0, 1.0);
@@ -192,7 +171,7 @@ TEST(FlakeTwinkle, CellsAreIndependentAndBlendedByTheirCosine) {
 }
 
 TEST(FlakeTwinkle, ColoursKeepTheSlicesDistributionBetweenCells) {
-  Greys source;
+  testing::OneSlicePaint source = greys();
   source.model.u_flake_cells = {10.0, 3.0};  // so that one slice's reach holds several cells
   std::vector<double> share(200, 0.0);
   constexpr std::array<std::pair<double, double>, 6> angles{
@@ -209,7 +188,7 @@ TEST(FlakeTwinkle, ColoursKeepTheSlicesDistributionBetweenCells) {
       }
   double wanted = 0.0, got = 0.0, apart = 0.0;
   for (std::size_t t = 0; t < 200; ++t) {
-    wanted += static_cast<double>(source.mass[t]) / source.paint.row_mass;
+    wanted += static_cast<double>(source.paint.mass[t]) / source.paint.row_mass;
     got += share[t];
     apart = std::max(apart, std::abs(wanted - got));
   }
@@ -221,7 +200,7 @@ TEST(FlakeTwinkle, ColoursKeepTheSlicesDistributionBetweenCells) {
 }
 
 TEST(FlakeTwinkle, MeanOverTexelsIsTheMeanAtEveryPhase) {
-  Greys source;
+  testing::OneSlicePaint source = greys();
   const auto table = source.model.flake_mean(0.0, 0.0);
   for (const double fh : {0.0, 0.1, 0.2, 0.3, 0.4}) {
     double sum = 0.0;

@@ -124,7 +124,7 @@ struct SamplePack {
   }
 };
 
-/// Two parts: a quad with occlusion, a triangle without.
+/// Two parts: a quad and a triangle.
 inline packs::Scene sample_scene() {
   packs::Scene scene;
   scene.name = "sample";
@@ -132,7 +132,6 @@ inline packs::Scene sample_scene() {
   quad.name = "quad";
   quad.positions_mm = {{0, 0, 0}, {100.125f, 0, 0}, {100, 100, 0}, {0, 100, -1e-3f}};
   quad.normals = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, -0.6f, 0.8f}, {0.48f, 0.6f, 0.64f}};
-  quad.ambient_occlusion = {0, 85, 170, 255};
   quad.indices = {0, 1, 2, 0, 2, 3};
   packs::MeshPart triangle;
   triangle.name = "glass";

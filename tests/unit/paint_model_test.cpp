@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/colour.hpp"
+#include "tests/unit/one_slice_paint.hpp"
 
 namespace lackwerk::core {
 namespace {
@@ -133,37 +134,12 @@ TEST(PaintModel, DecodesLabAsColourDoes) {
   }
 }
 
-/// One paint, one slice in use at (0, 0): half black, and rare bright flakes.
-struct FlakePaint {
-  std::vector<QuantisedCuboid> clusters{{{0, 100, 32768, 32768, 32768, 32768}},
-                                        {{60000, 65535, 32000, 34000, 32000, 33000}}};
-  std::vector<std::uint32_t> begin{0, 2, 4}, mass{990, 10, 990, 10};
-  std::vector<std::uint8_t> index{0, 1, 0, 1};
-  InterpolatablePaint paint;
-  FlakePaint() {
-    clusters.insert(clusters.end(), clusters.begin(), clusters.begin() + 2);
-    paint.layout = {12, {0, 1}};
-    paint.level_count = 2;
-    paint.texel_mm = 0.05f;
-    paint.level0_texels = 2;
-    paint.range = {{0.0f, -100.0f, -100.0f}, {200.0f, 100.0f, 100.0f}};
-    paint.tuple_begin = begin;
-    paint.mass = mass;
-    paint.row_mass = 1000;
-    paint.random_seed = 5;
-    paint.paints.push_back({{}, {}, begin, clusters, index, {}});
-  }
-};
-
 TEST(PaintModel, TexelsHaveTheMeanOfTheTable) {
-  const FlakePaint source;
-  RealisedPaint realised;
-  realise(source.paint, Weights::uniform({1.0}), realised);
-  PaintTextures textures = make_static_textures(source.paint);
-  const AnalyticPaint analytic = realised.analytic;
-  update_textures(source.paint, realised, textures);
-  Model model;
-  bind_model(source.paint, analytic, textures, model);
+  // Half black, and rare bright flakes.
+  const testing::FlakeRow row{{{{0, 100, 32768, 32768, 32768, 32768}}, {{60000, 65535, 32000, 34000, 32000, 33000}}},
+                              {990, 10}};
+  testing::OneSlicePaint source(row, row, 5);
+  Model& model = source.model;
   Vec sum(0.0);
   int bright = 0;
   constexpr int n = 512;

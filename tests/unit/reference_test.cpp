@@ -1,4 +1,4 @@
-// The reference integrator: against closed forms, against brute-force quadrature, and against its own error bars.
+// The reference integrator: against brute-force quadrature, and against its own error bars.
 #include "core/analysis/reference.hpp"
 
 #include <gtest/gtest.h>
@@ -19,6 +19,7 @@
 #include "packs/paint_pack.hpp"
 #include "packs/scene.hpp"
 #include "render_gles/view.hpp"
+#include "tests/unit/reference_scenes.hpp"
 
 namespace lackwerk::core {
 namespace {
@@ -26,140 +27,14 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 using std::numbers::pi;
-
-/// Vertices and indices that outlive the spans of a ReferenceMesh.
-struct Mesh {
-  std::vector<glm::vec3> positions, normals;
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint8_t> visibility;
-
-  [[nodiscard]] ReferenceMesh spans(std::size_t material) const {
-    return {positions, normals, visibility, indices, material};
-  }
-  void open_by(const packs::Visibility& bytes) {
-    for (std::size_t k = 0; k < positions.size(); ++k) visibility.insert(visibility.end(), bytes.begin(), bytes.end());
-  }
-};
-
-/// A square of edge 2 half_mm around `centre`, facing `normal`.
-Mesh quad(const glm::vec3& centre, const glm::vec3& normal, float half_mm) {
-  const glm::vec3 side = std::abs(normal.z) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
-  const glm::vec3 x = glm::normalize(glm::cross(side, normal)) * half_mm, y = glm::cross(normal, x);
-  return {{centre - x - y, centre + x - y, centre + x + y, centre - x + y},
-          std::vector<glm::vec3>(4, normal),
-          {0, 1, 2, 0, 2, 3},
-          {}};
-}
-
-Mesh sphere(const glm::vec3& centre, float radius_mm, int rings) {
-  Mesh out;
-  const int spokes = 2 * rings;
-  for (int a = 0; a <= rings; ++a)
-    for (int b = 0; b <= spokes; ++b) {
-      const double t = pi * a / rings, p = 2.0 * pi * b / spokes;
-      const glm::vec3 n(glm::dvec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)));
-      out.positions.push_back(centre + n * radius_mm);
-      out.normals.push_back(n);
-    }
-  const auto at = [&](int a, int b) { return static_cast<std::uint32_t>(a * (spokes + 1) + b); };
-  for (int a = 0; a < rings; ++a)
-    for (int b = 0; b < spokes; ++b) {
-      const std::uint32_t i[] = {at(a, b), at(a + 1, b), at(a + 1, b + 1), at(a, b), at(a + 1, b + 1), at(a, b + 1)};
-      out.indices.insert(out.indices.end(), i, i + 6);
-    }
-  return out;
-}
-
-AnalyticPaint white() {
-  AnalyticPaint out;
-  out.diffuse = dvec3(1.0);
-  return out;
-}
-
-/// A dim room with a bright window and a faint floor; 4 m around a point 1 m above the floor.
-Environment lit_room(float radius_mm = 4000.0f) {
-  Environment out = uniform_environment(glm::vec3(1.0f));
-  out.range = 16.0f;
-  out.centre_mm = {0.0f, 0.0f, 1000.0f};
-  out.room_radius_mm = radius_mm;
-  const EnvironmentLevel& level = environment_levels[0];
-  for (int y = -1; y <= level.edge; ++y)
-    for (int x = -1; x <= level.edge; ++x) {
-      const dvec3 d = direction_from_octahedral({(std::clamp(x, 0, level.edge - 1) + 0.5) / level.edge,
-                                                 (std::clamp(y, 0, level.edge - 1) + 0.5) / level.edge});
-      dvec3 radiance(0.15, 0.18, 0.22);
-      if (d.z < -0.02) radiance = dvec3(0.3, 0.28, 0.25) * -d.z;
-      if (d.z > 0.35 && d.z < 0.7 && d.x > 0.2 && std::abs(d.y) < 0.4) radiance = dvec3(12.0, 11.0, 9.0);
-      encode_radiance(radiance, 16.0,
-                      &out.atlas[4 * static_cast<std::size_t>((level.y + y) * environment_width + level.x + x)]);
-    }
-  return out;
-}
-
-ReferenceOptions options_of(int edge, int samples) {
-  ReferenceOptions out;
-  out.width = out.height = edge;
-  out.samples = samples;
-  out.threads = 1;
-  return out;
-}
-
-ReferenceImage render(const ReferenceScene& scene, const ReferenceView& view, const ReferenceLighting& lighting,
-                      const ReferenceOptions& options) {
-  auto image = render_reference(scene, view, lighting, options);
-  EXPECT_TRUE(image) << (image ? "" : image.error().line());
-  return image ? std::move(*image) : ReferenceImage{};
-}
-
-/// The mean over the picture, and the standard error of that mean.
-std::pair<dvec3, dvec3> overall(const ReferenceImage& image) {
-  dvec3 mean(0.0), variance(0.0);
-  for (std::size_t k = 0; k < image.mean.size(); ++k) {
-    mean += image.mean[k];
-    variance += image.error[k] * image.error[k];
-  }
-  const auto n = static_cast<double>(image.mean.size());
-  return {mean / n, glm::sqrt(variance) / n};
-}
-
-class Furnace : public testing::TestWithParam<ReferenceVisibility> {};
-
-TEST_P(Furnace, AWhiteSphereInUniformLightCannotBeSeen) {
-  const Environment environment = uniform_environment(glm::vec3(1.0f));
-  const Mesh ball = sphere(glm::vec3(0.0f), 100.0f, 48);
-  const ReferenceScene scene{{{white()}}, {ball.spans(0)}, &environment, {}};
-  ReferenceOptions options = options_of(24, 256);
-  options.visibility = GetParam();
-  const ReferenceImage image =
-      render(scene, {{0, -400, 100}, {0, 0, 0}, 40.0}, {{}, 1.0, 1.0, 0.0, dvec3(1.0)}, options);
-  const auto [mean, error] = overall(image);
-  EXPECT_NEAR(mean.y, 1.0, 4.0 * error.y);
-  EXPECT_LT(error.y, 1e-3);
-  const double typical = error.y * std::sqrt(static_cast<double>(image.mean.size()));
-  for (std::size_t k = 0; k < image.mean.size(); ++k) EXPECT_NEAR(image.mean[k].y, 1.0, 7.0 * typical) << k;
-}
-
-TEST_P(Furnace, AMirroringLobeGivesNoMoreThanItTakes) {
-  const Environment environment = uniform_environment(glm::vec3(1.0f));
-  const Mesh ball = sphere(glm::vec3(0.0f), 100.0f, 48);
-  for (const double m : {0.02, 0.15, 0.6}) {
-    AnalyticPaint mirror;
-    mirror.lobes[0] = {dvec3(0.25), m, 1.0};
-    const ReferenceScene scene{{{mirror}}, {ball.spans(0)}, &environment, {}};
-    ReferenceOptions options = options_of(16, 256);
-    options.visibility = GetParam();
-    const ReferenceImage image = render(scene, {{0, -150, 20}, {0, 0, 0}, 20.0}, {}, options);
-    const auto [mean, error] = overall(image);
-    EXPECT_LE(mean.y, 1.0 + 4.0 * error.y) << m;
-    // At near normal view V-cavities hide little: a narrow lobe keeps nearly all.
-    EXPECT_GE(mean.y, m < 0.1 ? 0.99 : 0.6) << m;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Furnace, testing::Values(ReferenceVisibility::baked, ReferenceVisibility::traced),
-                         [](const auto& info) {
-                           return info.param == ReferenceVisibility::baked ? "Baked" : "Traced";
-                         });
+using testing::lit_room;
+using testing::Mesh;
+using testing::options_of;
+using testing::overall;
+using testing::quad;
+using testing::render;
+using testing::sphere;
+using testing::white;
 
 TEST(ReferenceRoom, DrawsFromAnyPlaceAgreeWithUniformOnes) {
   const Environment environment = lit_room();
@@ -356,7 +231,7 @@ TEST(ReferencePicture, IsTheSameForAnyNumberOfThreads) {
   EXPECT_FALSE(one.mean == render(subject.scene, subject.view, subject.lighting, options).mean);
 }
 
-class ErrorBars : public testing::TestWithParam<ReferenceVisibility> {};
+class ErrorBars : public ::testing::TestWithParam<ReferenceVisibility> {};
 
 TEST_P(ErrorBars, SayHowFarTwoSeedsDiffer) {
   const BallOnFloor subject;
@@ -380,7 +255,7 @@ TEST_P(ErrorBars, SayHowFarTwoSeedsDiffer) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(squared[c] / variance[c], 1.0, 0.2) << c;
   EXPECT_NEAR(luminance / luminance_variance, 1.0, 0.2);
 }
-INSTANTIATE_TEST_SUITE_P(All, ErrorBars, testing::Values(ReferenceVisibility::baked, ReferenceVisibility::traced),
+INSTANTIATE_TEST_SUITE_P(All, ErrorBars, ::testing::Values(ReferenceVisibility::baked, ReferenceVisibility::traced),
                          [](const auto& info) {
                            return info.param == ReferenceVisibility::baked ? "Baked" : "Traced";
                          });

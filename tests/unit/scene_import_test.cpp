@@ -8,10 +8,13 @@
 #include <fstream>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
+#include <random>
 #include <sstream>
 
 #include "packs/scene_pack.hpp"
 #include "packs/tools/import_materials.hpp"
+#include "packs/tools/model_reader.hpp"
 #include "packs/tools/scene_detail.hpp"
 #include "tests/unit/pack_samples.hpp"
 
@@ -128,6 +131,12 @@ TEST(SceneImport, WhatCanBeMendedIsMendedAndSaid) {
   made = import_scene(folder / "turned.obj", painted("A"));
   ASSERT_TRUE(made) << made.error().line();
   EXPECT_EQ(made->repairs, std::vector<std::string>{"1 face turned to where the normals point"});
+  // Normals without length are none.
+  write(folder / "none.obj",
+        "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 1\nvn 0 0 0\nusemtl A\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
+  made = import_scene(folder / "none.obj", painted("A"));
+  ASSERT_TRUE(made) << made.error().line();
+  EXPECT_EQ(made->repairs, std::vector<std::string>{"normals made for 1 mesh"});
 }
 
 TEST(SceneImport, WhatCannotBeMendedIsRefusedByName) {
@@ -156,20 +165,28 @@ TEST(SceneImport, WhatCannotBeMendedIsRefusedByName) {
   EXPECT_NE(refused("", painted("A")).find("not a regular file"), std::string::npos);
   // Sparse: takes no room on the disk.
   write(folder / "huge.obj", "v 0 0 0\n");
-  std::filesystem::resize_file(folder / "huge.obj", max_model_bytes + 1);
+  std::filesystem::resize_file(folder / "huge.obj", ModelLimits{}.bytes + 1);
   EXPECT_NE(refused("huge.obj", painted("A")).find("size"), std::string::npos);
 }
 
-/// A glTF of two triangles, Body and Glass, in metres, y up, the nose at +z, without normals; the node stands 1 m up.
-void write_gltf(const std::filesystem::path& path) {
+/// A glTF of two triangles, Body and Glass, in metres, y up, the nose at +z, without normals; the node stands 1 m up,
+/// `copies` times at one place.
+void write_gltf(const std::filesystem::path& path, int copies = 1) {
   const float positions[6][3] = {{-0.9f, 0, 2}, {0.9f, 0, 2}, {0, 0.5f, -2.5f},
                                  {-0.9f, 1, 1}, {0.9f, 1, 1}, {0, 1.2f, -2}};
   std::string bytes(sizeof positions, '\0');
   std::memcpy(bytes.data(), positions, sizeof positions);
   const std::filesystem::path buffer = path.parent_path() / "model.bin";
   write(buffer, bytes);
-  write(path, R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-"nodes":[{"mesh":0,"translation":[0,1,0]}],
+  std::string roots, nodes;
+  for (int k = 0; k < copies; ++k) {
+    const char* comma = k == 0 ? "" : ",";
+    roots += comma + std::to_string(k);
+    nodes += std::string(comma) + R"({"mesh":0,"translation":[0,1,0]})";
+  }
+  write(path, R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + roots + R"(]}],
+"nodes":[)" + nodes +
+                  R"(],
 "buffers":[{"uri":"model.bin","byteLength":72}],
 "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36}],
 "accessors":[
@@ -193,30 +210,130 @@ TEST(SceneImport, GltfIsInMetresWithYUpAndItsNoseAhead) {
   EXPECT_NE(made->placement.find("unit metres,"), std::string::npos) << made->placement;
 }
 
-TEST(SceneImport, LargeModelsGetACoarseTwin) {
-  const TemporaryFolder folder;
-  constexpr int edge = 215;  // 91,592 triangles
+/// A wave of 2 (edge - 1)^2 triangles, about 4.3 x 1.9 where edge is 215; `faces` in the order given.
+std::string wave_obj(int edge, const std::vector<int>& quads) {
+  const double step = 4.3 / edge;
   std::ostringstream out;
   for (int y = 0; y < edge; ++y)
     for (int x = 0; x < edge; ++x)
-      out << "v " << 0.02 * x << ' ' << 0.009 * y << ' ' << 0.05 * std::sin(0.02 * x) + 0.02 * std::sin(0.03 * y)
-          << '\n';
+      out << "v " << step * x << ' ' << 0.45 * step * y << ' '
+          << 0.05 * std::sin(step * x) + 0.02 * std::sin(1.5 * step * y) << '\n';
   out << "usemtl Lack\n";
-  for (int y = 0; y + 1 < edge; ++y)
-    for (int x = 1; x < edge; ++x)
-      out << "f " << y * edge + x << ' ' << y * edge + x + 1 << ' ' << (y + 1) * edge + x + 1 << ' '
-          << (y + 1) * edge + x << '\n';
-  write(folder / "wave.obj", out.str());
+  for (const int quad : quads) {
+    const int corner = quad / (edge - 1) * edge + quad % (edge - 1) + 1;
+    out << "f " << corner << ' ' << corner + 1 << ' ' << corner + edge + 1 << ' ' << corner + edge << '\n';
+  }
+  return out.str();
+}
+
+std::vector<int> in_order(int edge) {
+  std::vector<int> quads(static_cast<std::size_t>((edge - 1) * (edge - 1)));
+  std::iota(quads.begin(), quads.end(), 0);
+  return quads;
+}
+
+std::size_t painted_triangles(const Scene& scene, std::uint8_t detail) {
+  std::size_t count = 0;
+  for (const MeshPart& part : scene.parts)
+    if (part.kind == SurfaceKind::paint && (part.detail & detail) != 0) count += part.indices.size() / 3;
+  return count;
+}
+
+TEST(SceneImport, LargeModelsGetACoarseTwin) {
+  const TemporaryFolder folder;
+  constexpr int edge = 215;  // 91,592 triangles
+  write(folder / "wave.obj", wave_obj(edge, in_order(edge)));
   const auto made = import_scene(folder / "wave.obj", painted("Lack"));
   ASSERT_TRUE(made) << made.error().line();
-  std::size_t full = 0, coarse = 0;
-  for (const MeshPart& part : made->scene.parts) {
-    if (part.kind != SurfaceKind::paint) continue;
-    (part.detail == detail_full ? full : coarse) += part.indices.size() / 3;
+  EXPECT_EQ(painted_triangles(made->scene, detail_full), 2u * (edge - 1) * (edge - 1));
+  EXPECT_LE(painted_triangles(made->scene, detail_coarse), 60'000u);
+  EXPECT_GT(painted_triangles(made->scene, detail_coarse), 1000u);
+}
+
+TEST(SceneImport, MoreThanTheLimitsIsRefusedWithTheLimitAndTheRemedy) {
+  const TemporaryFolder folder;
+  constexpr int edge = 33;  // 2,048 triangles
+  write(folder / "wave.obj", wave_obj(edge, in_order(edge)));
+  write_gltf(folder / "model.gltf", 600);  // 1,200 triangles of two that the file has
+  const auto refusal = [&](const char* name, const ModelLimits& limits) {
+    ImportSettings settings = painted(name[0] == 'w' ? "Lack" : "Body");
+    settings.limits = limits;
+    const auto made = import_scene(folder / name, settings);
+    return made ? std::string("accepted") : made.error().line();
+  };
+  EXPECT_EQ(refusal("wave.obj", {.triangles = 2048}), "accepted");
+  const std::string faces = refusal("wave.obj", {.triangles = 2047});
+  EXPECT_NE(faces.find("wave.obj: faces: 2048 triangles or more, of at most 2047"), std::string::npos) << faces;
+  EXPECT_NE(faces.find("simplify the model"), std::string::npos) << faces;
+  const std::string bytes = refusal("wave.obj", {.bytes = 1000});
+  EXPECT_NE(bytes.find("bytes of at most 1000"), std::string::npos) << bytes;
+  EXPECT_NE(bytes.find("simplify the model"), std::string::npos) << bytes;
+  EXPECT_EQ(refusal("model.gltf", {.triangles = 1200}), "accepted");
+  const std::string copies = refusal("model.gltf", {.triangles = 1100});
+  EXPECT_NE(copies.find("triangles or more, of at most 1100"), std::string::npos) << copies;
+  EXPECT_EQ(refusal("model.gltf", {}), "accepted");
+}
+
+TEST(SceneImport, MoreThanAKioskCanUseIsSimplifiedAndSaid) {
+  const TemporaryFolder folder;
+  constexpr int edge = 65;  // 8,192 triangles
+  const std::string joined = wave_obj(edge, in_order(edge));
+  write(folder / "joined.obj", joined);
+  // The same as a stereolithography file: no triangle shares a vertex with another, and each has its own normal.
+  std::ostringstream facets;
+  facets << "solid Lack\n";
+  for (int quad = 0; quad < (edge - 1) * (edge - 1); ++quad) {
+    const auto corner = [&](int dx, int dy) {
+      const double x = 0.0661538 * (quad % (edge - 1) + dx), y = 0.0297692 * (quad / (edge - 1) + dy);
+      facets << "vertex " << x << ' ' << y << ' ' << 0.05 * std::sin(x) + 0.02 * std::sin(3.3 * y) << '\n';
+    };
+    for (const bool upper : {false, true}) {
+      facets << "facet normal " << 0.001 * (quad % 9) << " 0 1\nouter loop\n";
+      corner(0, 0);
+      corner(1, upper ? 1 : 0);
+      corner(upper ? 0 : 1, 1);
+      facets << "endloop\nendfacet\n";
+    }
   }
-  EXPECT_EQ(full, 2u * (edge - 1) * (edge - 1));
-  EXPECT_LE(coarse, 60'000u);
-  EXPECT_GT(coarse, 1000u);
+  facets << "endsolid Lack\n";
+  write(folder / "facets.stl", facets.str());
+  for (const char* name : {"joined.obj", "facets.stl"}) {
+    const auto model = read_model(folder / name);
+    ASSERT_TRUE(model) << model.error().line();
+    ImportSettings settings = painted(model->materials.at(0));
+    settings.kept_triangles = 8192;
+    const auto whole = import_scene(folder / name, settings);
+    ASSERT_TRUE(whole) << whole.error().line();
+    EXPECT_EQ(painted_triangles(whole->scene, detail_full), 8192u) << name;
+    settings.kept_triangles = 2000;
+    const auto made = import_scene(folder / name, settings);
+    ASSERT_TRUE(made) << made.error().line();
+    EXPECT_LE(painted_triangles(made->scene, detail_full), 2500u) << name;
+    EXPECT_GT(painted_triangles(made->scene, detail_full), 1000u) << name;
+    EXPECT_LT(glm::distance(size_of(made->scene), size_of(whole->scene)), 2.0f) << name;
+    ASSERT_FALSE(made->repairs.empty()) << name;
+    const std::string& said = made->repairs.back();
+    EXPECT_EQ(said.rfind("simplified from 8192 to ", 0), 0u) << said;
+    EXPECT_NE(said.find(" mm off"), std::string::npos) << said;
+  }
+}
+
+TEST(SceneImport, SplittingForSixteenBitsRepeatsFewVertices) {
+  const TemporaryFolder folder;
+  constexpr int edge = 262;  // 68,644 vertices
+  std::vector<int> quads = in_order(edge);
+  std::shuffle(quads.begin(), quads.end(), std::mt19937(1));
+  write(folder / "wave.obj", wave_obj(edge, quads));
+  const auto made = import_scene(folder / "wave.obj", painted("Lack"));
+  ASSERT_TRUE(made) << made.error().line();
+  ASSERT_TRUE(write_scene_pack(folder / "wave.lws", made->scene));
+  const auto back = read_scene_pack(folder / "wave.lws");
+  ASSERT_TRUE(back) << back.error().line();
+  std::size_t vertices = 0;
+  for (const MeshPart& part : back->parts)
+    if (part.kind == SurfaceKind::paint && part.detail == detail_full) vertices += part.positions_mm.size();
+  EXPECT_GE(vertices, 68'644u);
+  EXPECT_LT(vertices, 71'000u);
 }
 
 TEST(SceneImport, NamesTellKinds) {

@@ -57,7 +57,6 @@ TEST(ScenePack, ComesBack) {
       EXPECT_EQ(back->parts[k].name, scene.parts[k].name);
       EXPECT_EQ(back->parts[k].kind, scene.parts[k].kind);
       EXPECT_EQ(back->parts[k].positions_mm, scene.parts[k].positions_mm);
-      EXPECT_EQ(back->parts[k].ambient_occlusion, scene.parts[k].ambient_occlusion);
       EXPECT_EQ(back->parts[k].indices, scene.parts[k].indices);
       EXPECT_EQ(back->parts[k].visibility, scene.parts[k].visibility);
       EXPECT_EQ(back->parts[k].irradiance, scene.parts[k].irradiance);
@@ -86,7 +85,6 @@ MeshPart strip(std::uint32_t quads) {
     for (int side = 0; side < 2; ++side) {
       part.positions_mm.emplace_back(0.01f * static_cast<float>(k), static_cast<float>(side), 0.0f);
       part.normals.emplace_back(0.0f, 0.0f, 1.0f);
-      part.ambient_occlusion.push_back(static_cast<std::uint8_t>(k % 256));
       Visibility visibility = open_visibility;
       visibility[1] = static_cast<std::uint8_t>(k % 251);
       part.visibility.push_back(visibility);
@@ -114,7 +112,6 @@ TEST(ScenePack, LargePartsAreSplitWithoutChange) {
     for (const std::uint32_t index : part.indices) {
       const std::uint32_t original = whole.indices[corner++];
       ASSERT_EQ(part.positions_mm[index], whole.positions_mm[original]);
-      ASSERT_EQ(part.ambient_occlusion[index], whole.ambient_occlusion[original]);
       ASSERT_EQ(part.visibility[index], whole.visibility[original]);
       ASSERT_EQ(part.irradiance[index], whole.irradiance[original]);
     }
@@ -164,7 +161,6 @@ TEST(ScenePack, SoundFilesWithoutSenseAreRefusedByField) {
       {"parts[0].positions[1]", [](Scene& s) { s.parts[0].positions_mm[1].y = nan; }},
       {"parts[0].positions[3]", [](Scene& s) { s.parts[0].positions_mm[3].z = 1e7f; }},
       {"parts[0].normals", [](Scene& s) { s.parts[0].normals.pop_back(); }},
-      {"parts[0].ambient_occlusion", [](Scene& s) { s.parts[0].ambient_occlusion.pop_back(); }},
       {"parts[1].indices[2]", [](Scene& s) { s.parts[1].indices[2] = 3; }},
       {"parts[1].indices", [](Scene& s) { s.parts[1].indices.push_back(0); }},
       {"parts[1]", [](Scene& s) { s.parts[1].indices.clear(); }},
@@ -238,9 +234,8 @@ TEST(ScenePack, TooMuchIsRefusedBeforeItIsCopied) {
   std::vector<fb::UnitVector> unit(60000, fb::UnitVector(0, 0, 32767));
   const auto positions = out.CreateVectorOfStructs(points);
   const auto normals = out.CreateVectorOfStructs(unit);
-  const auto occlusion = out.CreateVector(std::vector<std::uint8_t>{});
   const auto indices = out.CreateVector(std::vector<std::uint16_t>{0, 1, 2});
-  const auto part = fb::CreatePart(out, name, 0, positions, normals, occlusion, indices, {}, {}, detail_full);
+  const auto part = fb::CreatePart(out, name, 0, positions, normals, indices, {}, {}, detail_full);
   const auto parts = out.CreateVector(std::vector<flatbuffers::Offset<fb::Part>>(4000, part));
   const auto views = out.CreateVector(std::vector<flatbuffers::Offset<fb::View>>{});
   const auto atlas = out.CreateVector(std::vector<std::uint8_t>(environment_bytes));
@@ -265,6 +260,37 @@ TEST(ScenePack, FilesWithoutLightAreRefusedByVersion) {
   ASSERT_FALSE(old);
   EXPECT_EQ(old.error().field, "schema_version");
   EXPECT_EQ(old.error().remedy, "build the scene again");
+}
+
+TEST(ScenePack, WhatVersionTwoHadBesidesIsPassedOver) {
+  flatbuffers::FlatBufferBuilder out;
+  const auto name = out.CreateString("x");
+  const std::vector<fb::Point> points(3, fb::Point(0, 0, 0));
+  const auto positions = out.CreateVectorOfStructs(points);
+  const std::vector<fb::UnitVector> unit(3, fb::UnitVector(0, 0, 32767));
+  const auto normals = out.CreateVectorOfStructs(unit);
+  const auto indices = out.CreateVector(std::vector<std::uint16_t>{0, 1, 2});
+  const auto occlusion = out.CreateVector(std::vector<std::uint8_t>{1, 2, 3});
+  constexpr flatbuffers::voffset_t ambient_occlusion = 12;  // the fifth field
+  fb::PartBuilder part(out);
+  part.add_name(name);
+  part.add_positions(positions);
+  part.add_normals(normals);
+  part.fbb_.AddOffset(ambient_occlusion, occlusion);
+  part.add_indices(indices);
+  part.add_detail(detail_full);
+  const auto parts = out.CreateVector(std::vector<flatbuffers::Offset<fb::Part>>{part.Finish()});
+  const auto views = out.CreateVector(std::vector<flatbuffers::Offset<fb::View>>{});
+  const auto atlas = out.CreateVector(std::vector<std::uint8_t>(environment_bytes));
+  const std::vector<fb::Light> light(core::environment_light_count, fb::Light({0, 0, 1}, {1, 1, 1}));
+  const auto lights = out.CreateVectorOfStructs(light);
+  const fb::Point centre(0, 0, 0);
+  const auto environment = fb::CreateEnvironment(out, name, &centre, 0.0f, 1.0f, atlas, lights);
+  fb::FinishScenePackBuffer(out, fb::CreateScenePack(out, 2, 2, name, name, parts, views, environment, 1.0f));
+  const auto back = decode_scene_pack({out.GetBufferPointer(), out.GetSize()}, "s.lws");
+  ASSERT_TRUE(back) << back.error().line();
+  ASSERT_EQ(back->parts.size(), 1u);
+  EXPECT_EQ(back->parts[0].indices, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
 TEST(ScenePack, AFileOfThisVersionNeedsItsLight) {

@@ -129,6 +129,18 @@ Patch build_disc(const WheelShape& s) {
   return with_normals(revolve(profile, 48), crease_deg);
 }
 
+/// The sheet behind the brake: without it the lit room shows through the spokes of the far wheel, where the floor's
+/// mirror image looks up under the car.
+Patch build_dust_shield(const WheelShape& s) {
+  constexpr double behind_disc_mm = 34.0;  // clear of the disc's own 30 mm
+  constexpr double sheet_mm = 3.0;
+  constexpr double gap_mm = 32.0;  // to the barrel's narrowest ring, which it nearly touches
+  const double y = s.disc_y_mm - behind_disc_mm, edge = s.rim_radius_mm - gap_mm;
+  const std::vector<Vec2> profile{{30.0, y}, {edge, y}, {edge, y - sheet_mm}, {30.0, y - sheet_mm}};
+  constexpr double crease_deg = 30.0;
+  return with_normals(revolve(profile, 36), crease_deg);
+}
+
 Patch build_caliper(const WheelShape& s) {
   // An arc around the disc's edge, behind the axle (the car's front is +x; calipers look best at the trailing side).
   constexpr int steps = 14;
@@ -154,6 +166,7 @@ WheelPatches build_wheel(const WheelLayout& layout, const WheelShape& shape) {
   wheel.rim = build_barrel(layout, shape);
   append(wheel.rim, build_hub(shape));
   append(wheel.rim, build_disc(shape));
+  append(wheel.rim, build_dust_shield(shape));
   for (int pair = 0; pair < shape.spoke_pairs; ++pair) {
     const double angle = 360.0 * pair / shape.spoke_pairs;
     for (const double side : {-1.0, 1.0}) append(wheel.rim, rotated_about_y(build_blade(shape, side), angle));

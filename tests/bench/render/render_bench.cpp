@@ -184,7 +184,7 @@ void still(Stage& stage, Report& report) {
     while (more)
       ms.push_back(time_ms([&] {
         const auto refined = stage.renderer().refine(view, lighting, stage.target());
-        more = refined && *refined;
+        more = refined && refined->more;
         stage.context().gl().Finish();
       }));
     double sum = 0.0;
