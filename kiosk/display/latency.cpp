@@ -1,6 +1,7 @@
 #include "kiosk/display/latency.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace {
 /// The value below which `share` of them lie (nearest rank).
 double quantile(std::span<const double> values, double share) {
   std::vector<double> sorted(values.begin(), values.end());
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1) + 0.5);
+  const auto rank = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(sorted.size() - 1)));
   std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
   return sorted[static_cast<std::size_t>(rank)];
 }

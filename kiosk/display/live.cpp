@@ -35,6 +35,7 @@ Live::Live(Output& output, Stage& stage, Picture& picture, State& state, Devices
 void Live::apply(const input::Control& control) {
   const State::Changes changes = state_.apply(control);
   weights_changed_ |= changes.weights;
+  report_due_ |= changes.weights;
   if (changes.any()) latency_.input(control.time_us);
 }
 
@@ -131,7 +132,7 @@ void Live::check_gamut() {
   constexpr int stride = 4;
   const gles::Image image = stage_.framebuffer().read();
   std::vector<std::array<double, 3>> colours;
-  colours.reserve(static_cast<std::size_t>((image.width / stride + 1) * (image.height / stride + 1)));
+  colours.reserve(image.rgb.size() / 3 / (stride * stride) + image.rgb.size() / 3 / stride);
   for (int y = 0; y < image.height; y += stride)
     for (int x = 0; x < image.width; x += stride) {
       std::array<double, 3> colour{};

@@ -224,6 +224,7 @@ TEST_F(LiveTest, WithoutAPanelInputCountsAndNothingIsDrawn) {
   EXPECT_EQ(picture_->drawn(), drawn);
   EXPECT_NE(state_->weights().base.front(), 1.0);
   EXPECT_EQ(status()["state"], "waiting_for_display");
+  EXPECT_EQ(status()["weights"]["base"], nlohmann::json(state_->weights().base)) << "what is turned is told";
   EXPECT_EQ(live_->wake_at_ms(now_ms_), input::never_ms);
   panel_->plug({54, 128}, kiosk::Rotation::quarter);
   step();

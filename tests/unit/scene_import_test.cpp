@@ -284,7 +284,8 @@ TEST(SceneImport, MoreThanAKioskCanUseIsSimplifiedAndSaid) {
   facets << "solid Lack\n";
   for (int quad = 0; quad < (edge - 1) * (edge - 1); ++quad) {
     const auto corner = [&](int dx, int dy) {
-      const double x = 0.0661538 * (quad % (edge - 1) + dx), y = 0.0297692 * (quad / (edge - 1) + dy);
+      const int row = quad / (edge - 1);
+      const double x = 0.0661538 * (quad % (edge - 1) + dx), y = 0.0297692 * (row + dy);
       facets << "vertex " << x << ' ' << y << ' ' << 0.05 * std::sin(x) + 0.02 * std::sin(3.3 * y) << '\n';
     };
     for (const bool upper : {false, true}) {
