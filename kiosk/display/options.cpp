@@ -80,7 +80,8 @@ const char* help_text() {
          "  --config FILE           configuration (kiosk.toml); --sample-config prints one with every key and default\n"
          "  --pack PACK.lwp         paints to show (needed here or in the file)\n"
          "  --scene SCENE.lws       what to show them on (needed here or in the file)\n"
-         "  --platform NAME         auto (default: the first of kms, dumb, fbdev that can be had), kms, dumb, fbdev;\n"
+         "  --platform NAME         auto (default: the first of kms, dumb, fbdev that can be had; with --frames:\n"
+         "                          surfaceless), kms, dumb, fbdev;\n"
          "                          surfaceless (EGL) and osmesa (software) draw without a display\n"
          "  --connector NAME        show on this connector (HDMI-A-1) instead of the first connected one\n"
          "  --rotation DEGREES      turn the picture clockwise by 0, 90, 180 or 270\n"
@@ -238,6 +239,9 @@ Result<Options> parse_options(int argc, char** argv) {
     return usage("--pack", "no paint pack given", "--pack PACK.lwp, or packs in --config");
   if (options.config.scene.empty())
     return usage("--scene", "no scene given", "--scene SCENE.lws, or scene in --config");
+  // Counted frames are for tests and recordings: they need no panel unless one is named.
+  if (options.frames && options.config.output.platform == Platform::automatic)
+    options.config.output.platform = Platform::surfaceless;
   if (!options.record.empty() && !options.frames)
     return usage("--record", "records frames of a virtual clock", "give --frames N too");
   if (!options.config.icc.empty()) {
