@@ -64,10 +64,10 @@ Result<void> Live::fit_output() {
   report_due_ = true;
   damaged_ = true;
   if (devices_.touch != nullptr) {
-    if (output_.state() == OutputState::suspended)
-      devices_.touch->suspend();
-    else
-      devices_.touch->resume();
+    const bool suspended = output_.state() == OutputState::suspended;
+    if (suspended && !suspended_) devices_.touch->suspend();
+    if (!suspended && suspended_) devices_.touch->resume();
+    suspended_ = suspended;
     devices_.touch->set_output(output_.mode().connector);
   }
   if (output_.state() != OutputState::running) {
@@ -96,7 +96,7 @@ bool Live::wants_frame() const {
          (damaged_ || weights_changed_ || !picture_.resting() || picture_.differs(state_));
 }
 
-Result<void> Live::show(double now_ms) {
+Result<void> Live::show() {
   if (output_.flipped_at_us() != flipped_at_us_) {
     flipped_at_us_ = output_.flipped_at_us();
     latency_.flipped(flipped_at_us_, frame_period_ms());
@@ -122,7 +122,6 @@ Result<void> Live::show(double now_ms) {
     log_.info("first picture " + std::to_string(static_cast<int>(monotonic_ms() - started_ms_)) + " ms after start");
     service_.ready("showing " + settings_.pack_file);
   }
-  reported_ms_ = std::min(reported_ms_, now_ms);
   return {};
 }
 
@@ -153,7 +152,7 @@ Result<void> Live::step(double now_ms) {
   if (auto dispatched = output_.dispatch(now_ms); !dispatched) return dispatched;
   take_input(now_ms);
   if (auto fitted = fit_output(); !fitted) return fitted;
-  if (auto shown = show(now_ms); !shown) return shown;
+  if (auto shown = show(); !shown) return shown;
   report(now_ms);
   service_.progress(now_ms);
   return {};

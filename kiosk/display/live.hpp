@@ -57,7 +57,7 @@ class Live {
   void take_input(double now_ms);
   void apply(const input::Control& control);
   [[nodiscard]] Result<void> fit_output();
-  [[nodiscard]] Result<void> show(double now_ms);
+  [[nodiscard]] Result<void> show();
   void report(double now_ms);
   void check_gamut();
   [[nodiscard]] bool wants_frame() const;
@@ -79,6 +79,7 @@ class Live {
   std::vector<input::Notice> notices_;
   GamutLoss gamut_loss_;  ///< of the last picture that came to rest
   std::uint64_t output_revision_ = 0, flipped_at_us_ = 0, handed_over_ = 0;
+  bool suspended_ = false;       ///< the touch screens are closed, another session has the seat
   bool fitted_ = false;          ///< the framebuffer has the output's size
   bool weights_changed_ = true;  ///< since the last realisation
   bool damaged_ = true;          ///< the framebuffer holds what the panel does not

@@ -14,17 +14,6 @@ namespace {
 
 using gles::Backend;
 
-class OnBackend : public testing::TestWithParam<Backend> {
- protected:
-  void SetUp() override {
-    std::string reason;
-    context_ = open_context(GetParam(), reason);
-    if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
-    if (!context_) GTEST_SKIP() << reason;
-  }
-  std::unique_ptr<gles::Context> context_;
-};
-
 TEST_P(OnBackend, SaysWhatItIs) {
   const gles::ContextInfo& info = context_->info();
   for (const std::string& line : info.lines()) std::printf("  %s\n", line.c_str());

@@ -53,14 +53,8 @@ TEST(LightShares, RoughLobesAreTheLightsSharpOnesAreLookedUp) {
   EXPECT_GT(gles::light_shares(paint, 1.0, 16.0)[1], thin) << "a coat spreads what comes out of it";
 }
 
-class CutLightsTest : public testing::TestWithParam<Backend> {
+class CutLightsTest : public OnBackend {
  protected:
-  void SetUp() override {
-    std::string reason;
-    context_ = open_context(GetParam(), reason);
-    if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
-    if (!context_) GTEST_SKIP() << reason;
-  }
   gles::Image picture(packs::SurfaceKind kind, const core::Environment& environment, int lights, int samples = 1) {
     const SyntheticPaint paint({.flakes = false});
     const auto target = gles::Framebuffer::create(*context_, 64, 64);
@@ -81,7 +75,6 @@ class CutLightsTest : public testing::TestWithParam<Backend> {
     }
     return renderer.still({{0.0f, -500.0f, 120.0f}, glm::vec3(0.0f), 24.0f, {}}, lighting, *target, samples);
   }
-  std::unique_ptr<gles::Context> context_;
 };
 
 const std::vector<std::uint8_t> everywhere(64 * 64, 1);

@@ -21,13 +21,11 @@ constexpr float radius_mm = 100.0f, eye_mm = 400.0f, fov_deg = 4.0f;
 /// 21 mm of a sphere, so near that a pixel is a thirtieth of the shortest wave.
 const gles::View near_view{{0.0f, -eye_mm, 0.0f}, {0.0f, 0.0f, 0.0f}, fov_deg, {}};
 
-class OrangePeelTest : public testing::TestWithParam<Backend> {
+class OrangePeelTest : public OnBackend {
  protected:
   void SetUp() override {
-    std::string reason;
-    context_ = open_context(GetParam(), reason);
-    if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
-    if (!context_) GTEST_SKIP() << reason;
+    OnBackend::SetUp();
+    if (!context_) return;
     target_ = std::make_unique<gles::Framebuffer>(gles::Framebuffer::create(*context_, edge_px, edge_px).value());
     renderer_ = std::make_unique<gles::Renderer>(*context_);
     packs::Scene scene;
@@ -51,7 +49,6 @@ class OrangePeelTest : public testing::TestWithParam<Backend> {
 
   const SyntheticPaint paint_{{.flakes = false}};
   gles::Lighting lighting_;
-  std::unique_ptr<gles::Context> context_;
   std::unique_ptr<gles::Framebuffer> target_;
   std::unique_ptr<gles::Renderer> renderer_;
 };

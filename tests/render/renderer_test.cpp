@@ -55,13 +55,11 @@ bool mentions(const std::vector<std::string>& lines, std::string_view words) {
                      [&](const auto& line) { return line.find(words) != std::string::npos; });
 }
 
-class RendererTest : public testing::TestWithParam<Backend> {
+class RendererTest : public OnBackend {
  protected:
   void SetUp() override {
-    std::string reason;
-    context_ = open_context(GetParam(), reason);
-    if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
-    if (!context_) GTEST_SKIP() << reason;
+    OnBackend::SetUp();
+    if (!context_) return;
     target_ = std::make_unique<gles::Framebuffer>(gles::Framebuffer::create(*context_, 96, 64).value());
     renderer_ = std::make_unique<gles::Renderer>(*context_);
     renderer_->set_scene(scene_of({sphere(100.0f, 48)}));
@@ -75,7 +73,6 @@ class RendererTest : public testing::TestWithParam<Backend> {
     return target_->read();
   }
 
-  std::unique_ptr<gles::Context> context_;
   std::unique_ptr<gles::Framebuffer> target_;
   std::unique_ptr<gles::Renderer> renderer_;
 };

@@ -36,6 +36,13 @@ std::unique_ptr<gles::Context> open_context(gles::Backend backend, std::string& 
   return nullptr;
 }
 
+void OnBackend::SetUp() {
+  std::string reason;
+  context_ = open_context(GetParam(), reason);
+  if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
+  if (!context_) GTEST_SKIP() << reason;
+}
+
 Difference compare_images(const gles::Image& a, const gles::Image& b, const std::vector<std::uint8_t>& mask) {
   Difference out;
   if (a.width != b.width || a.height != b.height) {

@@ -20,6 +20,13 @@ namespace lackwerk::test {
 /// this backend, a missing one is also a test failure.
 [[nodiscard]] std::unique_ptr<gles::Context> open_context(gles::Backend backend, std::string& reason);
 
+/// A test on one backend: skipped with the reason where there is none.
+class OnBackend : public testing::TestWithParam<gles::Backend> {
+ protected:
+  void SetUp() override;
+  std::unique_ptr<gles::Context> context_;
+};
+
 /// CIEDE2000 over the pixels of two pictures of equal size, as an sRGB display shows them.
 struct Difference {
   double mean = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
