@@ -95,8 +95,10 @@ struct Weights {
   std::vector<double> base;             ///< diffuse, lobes, coat, colour table
   std::vector<double> flake_lightness;  ///< L of the flakes
   std::vector<double> flake_colour;     ///< a and b of the flakes
+  /// How far a and b of the flakes are taken out, [0, 1]; 1: white flakes (Golla & Klein 2018, 4.4 and Figure 5).
+  double flake_white = 0.0;
   /// The same weights in all three groups.
-  [[nodiscard]] static Weights uniform(const std::vector<double>& w) { return {w, w, w}; }
+  [[nodiscard]] static Weights uniform(const std::vector<double>& w) { return {w, w, w, 0.0}; }
   bool operator==(const Weights&) const = default;
 };
 

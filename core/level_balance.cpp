@@ -52,7 +52,8 @@ LabGain::LabGain(double gain, const LabRange& range) {
   const glm::dvec3 lo = range.lo, step = (glm::dvec3(range.hi) - lo) / 65535.0;
   // In units of the grid, v = lo + step q: what v -> r v + s is for q.
   const auto offset = [&](double r, double s, int axis) {
-    return static_cast<float>(((r - 1.0) * lo[axis] + s) / step[axis]);
+    // A grid without an extent holds one value, which nothing moves.
+    return step[axis] > 0.0 ? static_cast<float>(((r - 1.0) * lo[axis] + s) / step[axis]) : 0.0f;
   };
   factor = static_cast<float>(root);
   lightness_offset = offset(root, 16.0 * (root - 1.0), 0);

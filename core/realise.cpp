@@ -75,15 +75,8 @@ void blend_lobes(const InterpolatablePaint& paint, const WeightArray& weights, A
       sum.m += weights[k] * lobe.m;
       sum.f0 += weights[k] * lobe.f0;
     }
-    for (int c = 0; c < 3; ++c) sum.s[c] = std::max(sum.s[c], 0.0);
-    sum.m = std::clamp(sum.m, min_roughness, 1.0);
-    sum.f0 = std::clamp(sum.f0, 0.0, 1.0);
     blended[slot] = sum;
   }
-  // Extrapolation may change the order of roughness; a sum of lobes does not care, the paint's contract does.
-  const auto before = [](const Lobe& one, const Lobe& two) { return is_real(one) && (!is_real(two) || one.m > two.m); };
-  for (std::size_t last = 1; last < max_lobes; ++last)
-    for (std::size_t i = last; i > 0 && before(blended[i], blended[i - 1]); --i) std::swap(blended[i], blended[i - 1]);
   out.lobes = blended;
 }
 
@@ -139,13 +132,13 @@ void blend_tables(const InterpolatablePaint& paint, const WeightArray& weights, 
         lab += static_cast<float>(weights[k]) *
                (table ? table_lab(*table, edge, bin_h, bin_i) : glm::vec3(100.0f, 0.0f, 0.0f));
       }
-      const glm::vec3 linear = linear_from_lab(lab);
-      out.table->linear[index] = {std::max(linear.x, 0.0f), std::max(linear.y, 0.0f), std::max(linear.z, 0.0f)};
+      out.table->linear[index] = linear_from_lab(lab);
     }
   }
 }
 
-void blend_analytic(const InterpolatablePaint& paint, const Weights& weights, AnalyticPaint& out) {
+/// Blends all parameters as the weights say, whether they stay in their ranges or not.
+void blend_unclamped(const InterpolatablePaint& paint, const Weights& weights, AnalyticPaint& out) {
   WeightArray base{};
   std::copy(weights.base.begin(), weights.base.end(), base.begin());
   glm::dvec3 diffuse(0.0);
@@ -156,11 +149,34 @@ void blend_analytic(const InterpolatablePaint& paint, const Weights& weights, An
     coat += base[k] * paint.paints[k].analytic.coat_ior;
     refraction += base[k] * paint.paints[k].analytic.refraction_ior;
   }
-  for (int c = 0; c < 3; ++c) out.diffuse[c] = std::max(diffuse[c], 0.0);
-  out.coat_ior = std::max(coat, 1.0);
-  out.refraction_ior = std::max(refraction, 1.0);
+  out.diffuse = diffuse;
+  out.coat_ior = coat;
+  out.refraction_ior = refraction;
   blend_lobes(paint, base, out);
   blend_tables(paint, base, out);
+}
+
+void clamp_analytic(AnalyticPaint& out) {
+  for (int c = 0; c < 3; ++c) out.diffuse[c] = std::max(out.diffuse[c], 0.0);
+  out.coat_ior = std::max(out.coat_ior, 1.0);
+  out.refraction_ior = std::max(out.refraction_ior, 1.0);
+  for (Lobe& lobe : out.lobes) {
+    for (int c = 0; c < 3; ++c) lobe.s[c] = std::max(lobe.s[c], 0.0);
+    lobe.m = std::clamp(lobe.m, min_roughness, 1.0);
+    lobe.f0 = std::clamp(lobe.f0, 0.0, 1.0);
+  }
+  // Extrapolation may change the order of roughness; a sum of lobes does not care, the paint's contract does.
+  const auto before = [](const Lobe& one, const Lobe& two) { return is_real(one) && (!is_real(two) || one.m > two.m); };
+  for (std::size_t last = 1; last < max_lobes; ++last)
+    for (std::size_t i = last; i > 0 && before(out.lobes[i], out.lobes[i - 1]); --i)
+      std::swap(out.lobes[i], out.lobes[i - 1]);
+  if (!out.table) return;
+  for (glm::vec3& chi : out.table->linear) chi = {std::max(chi.x, 0.0f), std::max(chi.y, 0.0f), std::max(chi.z, 0.0f)};
+}
+
+void blend_analytic(const InterpolatablePaint& paint, const Weights& weights, AnalyticPaint& out) {
+  blend_unclamped(paint, weights, out);
+  clamp_analytic(out);
 }
 
 /// Weighted corners of one paint's clusters of one row: four floats of minima (L, a, b, -), then four of maxima.
@@ -204,6 +220,26 @@ void balance_row(double level0, double strength, std::span<const std::uint32_t> 
     }
 }
 
+/// Takes colour out of a row's boxes: a and b scaled by 1 - white. Scaling about a = b = 0 commutes with the balance of
+/// levels, and L stays, so that luminance does too. A grid whose range leaves 0 out gives the nearest it has.
+void whiten_row(double white, const LabRange& range, std::size_t tuples, RowCorners& corners) {
+  const auto kept = static_cast<float>(1.0 - white);
+  std::array<float, 2> added{};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto c = static_cast<glm::length_t>(axis + 1);
+    const double span = static_cast<double>(range.hi[c]) - static_cast<double>(range.lo[c]);
+    // The grid's number for 0; a range without width has only one colour anyway.
+    const double zero = span > 0.0 ? -static_cast<double>(range.lo[c]) / span * 65535.0 : 0.0;
+    added[axis] = static_cast<float>(white * zero);
+  }
+  for (std::size_t t = 0; t < tuples; ++t)
+    for (auto* corner : {&corners.lo, &corners.hi})
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        float& q = (*corner)[3 * t + 1 + axis];
+        q = kept * q + added[axis];
+      }
+}
+
 /// Rounds to the 16-bit grid. Where extrapolation turned a box inside out, it has shrunk to its middle: that keeps
 /// min <= max, is continuous in the weights and leaves upright boxes untouched to the bit.
 void round_row(const RowCorners& corners, std::size_t tuples, QuantisedCuboid* out) {
@@ -239,6 +275,7 @@ void realise_corners(const InterpolatablePaint& paint, const Weights& weights, R
   std::array<WeightedClusters, max_paints> weighted;
   RowCorners corners;
   const double strength = balance_strength(weights.flake_lightness);
+  const double white = std::clamp(weights.flake_white, 0.0, 1.0);
   const auto slices = static_cast<std::size_t>(paint.layout.slice_count());
   out.level0_luminance.resize(strength > 0.0 ? slices : 0);
   std::size_t slice = 0;
@@ -273,6 +310,7 @@ void realise_corners(const InterpolatablePaint& paint, const Weights& weights, R
       else
         balance_row(out.level0_luminance[slice], strength, mass, paint.range, corners);
     }
+    if (white > 0.0) whiten_row(white, paint.range, tuples, corners);
     QuantisedCuboid* to = out.corners.data() + row * width;
     round_row(corners, tuples, to);
     std::fill(to + tuples, to + width, QuantisedCuboid{});
@@ -363,7 +401,17 @@ Result<void> check_weights(const InterpolatablePaint& paint, const Weights& weig
   const std::size_t paints = paint.paints.size();
   if (auto ok = check_group(weights.base, paints, "weights.base"); !ok) return ok;
   if (auto ok = check_group(weights.flake_lightness, paints, "weights.flake_lightness"); !ok) return ok;
-  return check_group(weights.flake_colour, paints, "weights.flake_colour");
+  if (auto ok = check_group(weights.flake_colour, paints, "weights.flake_colour"); !ok) return ok;
+  if (!(weights.flake_white >= 0.0 && weights.flake_white <= 1.0))  // so that NaN is refused
+    return fail({}, "weights.flake_white", std::to_string(weights.flake_white) + " is outside [0, 1]",
+                "0 leaves the flakes their colour, 1 takes it out", ErrorKind::usage);
+  return {};
+}
+
+AnalyticPaint extrapolate_analytic(const InterpolatablePaint& paint, const Weights& weights) {
+  AnalyticPaint out;
+  blend_unclamped(paint, weights, out);
+  return out;
 }
 
 AnalyticPaint realise_analytic(const InterpolatablePaint& paint, const Weights& weights) {

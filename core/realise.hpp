@@ -16,7 +16,7 @@ namespace lackwerk::core {
 /// Sums further from 1 than this are refused as a caller's mistake; closer ones are what float sliders produce.
 inline constexpr double weight_sum_tolerance = 1e-6;
 
-/// Checks number of weights, finiteness and sums.
+/// Checks number of weights, finiteness, sums, and that flake_white lies in [0, 1].
 [[nodiscard]] Result<void> check_weights(const InterpolatablePaint& paint, const Weights& weights);
 
 /// What the GPU gets. `corners` is the texture: row_count() rows of `width` tuples of one QuantisedCuboid each
@@ -33,9 +33,14 @@ struct RealisedPaint {
 /// F0 in [0, 1], IOR >= 1 (Golla & Klein 2018, 4.2).
 [[nodiscard]] AnalyticPaint realise_analytic(const InterpolatablePaint& paint, const Weights& weights);
 
+/// The same blend as it comes out, nothing clamped and lobes as they were paired: for judging how far a mix may go.
+[[nodiscard]] AnalyticPaint extrapolate_analytic(const InterpolatablePaint& paint, const Weights& weights);
+
 /// Blends all corners and their means into `out`. Weights must have passed check_weights. At e_k the corners are
 /// bit for bit those of paint k. Extrapolated corners are clamped to the pack's range and keep min <= max. In mixes the
-/// rows of the farther mip levels are scaled to the mean luminance of level 0 (level_balance.hpp).
+/// rows of the farther mip levels are scaled to the mean luminance of level 0 (level_balance.hpp). flake_white scales a
+/// and b of all corners, and so the means, towards 0, or towards the nearest that the pack's range has; at 0 it changes
+/// no bit.
 void realise(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out);
 
 }  // namespace lackwerk::core

@@ -14,9 +14,12 @@ enum class ControlKind {
   base,             ///< values: one weight per paint, for lobes, diffuse and colour table only
   flake_lightness,  ///< values: one weight per paint, L of the flakes only
   flake_colour,     ///< values: one weight per paint, a and b of the flakes only
+  flake_white,      ///< values: [0, 1], how far the flakes' a and b are taken out
   camera,           ///< name: a camera of the scene
   orbit,            ///< values: azimuth and elevation to add, degrees
   zoom,             ///< values: factor on the distance to the target, > 0
+  light,            ///< values: number of the mood, 0 to 2
+  dimmer,           ///< values: [0, 1], day to showroom night
   turn,             ///< values: detents, positive clockwise; fractions after acceleration. name: the knob
   press,            ///< values: number of the button, the main one is 0. name: the knob
   release,          ///< as press

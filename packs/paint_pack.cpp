@@ -7,13 +7,20 @@
 
 namespace lackwerk::packs {
 
-Result<PaintPack> PaintPack::open(const std::filesystem::path& path, Backing backing) {
-  auto file = SealedFile::open(path, SealedKind::paint, backing);
+Result<PaintPack> PaintPack::from_file(Result<SealedFile> file, const std::string& name) {
   if (!file) return tl::unexpected(file.error());
-  auto contents = decode_paint_pack(file->payload(), path.string());
+  auto contents = decode_paint_pack(file->payload(), name);
   if (!contents) return tl::unexpected(contents.error());
-  if (auto checked = check_contents(*contents, path.string()); !checked) return tl::unexpected(checked.error());
+  if (auto checked = check_contents(*contents, name); !checked) return tl::unexpected(checked.error());
   return PaintPack(std::move(*file), std::move(*contents));
+}
+
+Result<PaintPack> PaintPack::open(const std::filesystem::path& path, Backing backing) {
+  return from_file(SealedFile::open(path, SealedKind::paint, backing), path.string());
+}
+
+Result<PaintPack> PaintPack::from_bytes(std::vector<std::uint8_t> bytes, const std::string& file) {
+  return from_file(SealedFile::from_bytes(std::move(bytes), SealedKind::paint, file), file);
 }
 
 Result<void> write_paint_pack(const std::filesystem::path& path, const PackContents& contents) {

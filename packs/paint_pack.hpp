@@ -18,8 +18,8 @@
 namespace lackwerk::packs {
 
 /// Written into new packs; a reader refuses packs whose minimum_reader is above its own schema version.
-inline constexpr std::uint32_t paint_schema_version = 2;
-/// Version 2 adds the flakes' angular life, which older readers may do without.
+inline constexpr std::uint32_t paint_schema_version = 3;
+/// Version 2 adds the flakes' angular life, version 3 the limit of extrapolation; older readers may do without both.
 inline constexpr std::uint32_t paint_minimum_reader = 1;
 inline constexpr std::string_view pack_tool_version = "lackwerk " LACKWERK_VERSION;
 
@@ -38,6 +38,7 @@ struct PackInfo {
   std::uint32_t schema_version = paint_schema_version;
   std::uint32_t minimum_reader = paint_minimum_reader;
   double transport_cost = 0.0;     ///< mean over rows and paints, Lab units per unit of mass; 0 with one paint
+  double beyond_limit = 0.0;       ///< [0, core::most_beyond]; 0 in packs of older versions too (core/beyond.hpp)
   std::vector<PaintError> errors;  ///< one per paint
   bool operator==(const PackInfo&) const = default;
 };
@@ -54,6 +55,9 @@ class PaintPack {
   /// passed. Errors name file and field. Use Backing::copy for files outside the store.
   [[nodiscard]] static Result<PaintPack> open(const std::filesystem::path& path, Backing backing = Backing::map);
 
+  /// The same checks on the bytes of a whole file that was read, and verified, elsewhere. `file` is for the errors.
+  [[nodiscard]] static Result<PaintPack> from_bytes(std::vector<std::uint8_t> bytes, const std::string& file);
+
   /// Valid for the life of this object; the spans stay where they are when it is moved.
   [[nodiscard]] const core::InterpolatablePaint& paint() const { return contents_.paint; }
   [[nodiscard]] const PackInfo& info() const { return contents_.info; }
@@ -61,6 +65,7 @@ class PaintPack {
   [[nodiscard]] std::uint64_t file_bytes() const { return file_.file_bytes(); }
 
  private:
+  [[nodiscard]] static Result<PaintPack> from_file(Result<SealedFile> file, const std::string& name);
   PaintPack(SealedFile file, PackContents contents) : file_(std::move(file)), contents_(std::move(contents)) {}
   SealedFile file_;
   PackContents contents_;

@@ -5,6 +5,9 @@
 #include <numeric>
 #include <string_view>
 
+#include "core/beyond.hpp"
+#include "packs/pack_id.hpp"
+
 namespace lackwerk::packs {
 namespace {
 
@@ -59,13 +62,7 @@ bool printable(const std::string& text) {
 }
 
 Result<void> check_info(const PackInfo& info, std::size_t paints, const Judge& judge) {
-  const auto id_character = [](char c, bool first) {
-    const bool alphanumeric = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-    return alphanumeric || (!first && (c == '.' || c == '_' || c == '-'));
-  };
-  bool id_ok = !info.id.empty() && info.id.size() <= 64;
-  for (std::size_t k = 0; k < info.id.size() && id_ok; ++k) id_ok = id_character(info.id[k], k == 0);
-  if (!id_ok)
+  if (!is_pack_id(info.id))
     return fail(judge.file, "id", "must be 1 to 64 letters, digits, dots, dashes or underscores, not a mark first",
                 "choose another id");
   if (info.minimum_reader < 1 || info.minimum_reader > paint_schema_version)
@@ -75,6 +72,7 @@ Result<void> check_info(const PackInfo& info, std::size_t paints, const Judge& j
   if (!printable(info.tool_version) || info.tool_version.size() > 256)
     return judge.refuse("tool_version", "must be at most 256 bytes of UTF-8 without control characters");
   if (auto ok = judge.within(info.transport_cost, 0.0, max_lab, "transport_cost"); !ok) return ok;
+  if (auto ok = judge.within(info.beyond_limit, 0.0, core::most_beyond, "beyond_limit"); !ok) return ok;
   if (info.errors.size() != paints) return judge.refuse("error", "must be there for every paint");
   return {};
 }

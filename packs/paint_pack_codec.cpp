@@ -137,7 +137,7 @@ std::vector<std::uint8_t> encode_paint_pack(const PackContents& contents) {
       out, fb::CreatePaintPack(out, contents.info.schema_version, contents.info.minimum_reader, id,
                                contents.info.serial, tool, paints, paint.layout.num_theta, layout, paint.level_count,
                                paint.texel_mm, paint.level0_texels, &lo, &hi, tuple_begin, mass, paint.row_mass,
-                               paint.random_seed, contents.info.transport_cost));
+                               paint.random_seed, contents.info.transport_cost, contents.info.beyond_limit));
   return {out.GetBufferPointer(), out.GetBufferPointer() + out.GetSize()};
 }
 
@@ -161,6 +161,7 @@ Result<PackContents> decode_paint_pack(std::span<const std::uint8_t> payload, co
   out.info.serial = root.serial();
   out.info.tool_version = root.tool_version()->str();
   out.info.transport_cost = root.transport_cost();
+  out.info.beyond_limit = root.beyond_limit();
   if (root.paints()->size() == 0 || root.paints()->size() > core::max_paints)
     return fail(file, "paints", std::to_string(root.paints()->size()) + " paints; a pack has 1 to 5",
                 "build the pack from 1 to 5 captures");

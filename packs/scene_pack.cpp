@@ -100,7 +100,8 @@ core::Environment decode_environment(const fb::Environment& environment) {
   out.centre_mm = point_of(*environment.centre());
   out.room_radius_mm = environment.room_radius();
   out.range = environment.range();
-  out.atlas.assign(environment.atlas()->begin(), environment.atlas()->end());
+  const std::uint8_t* atlas = environment.atlas()->data();
+  out.atlas.assign(atlas, atlas + environment.atlas()->size());
   for (const fb::Light* light : *environment.lights())
     out.lights.push_back({point_of(light->direction()), point_of(light->radiance())});
   return out;
@@ -211,8 +212,8 @@ Result<Scene> decode_scene_pack(std::span<const std::uint8_t> payload, const std
     return fail(file, "minimum_reader", "needs schema version " + std::to_string(root.minimum_reader()),
                 "update this program");
   if (auto ok = check_sizes(root, file); !ok) return tl::unexpected(ok.error());
-  Scene out;
-  out.name = root.name()->str();
+  // All in one: an environment of its own, which a Scene otherwise begins with, takes longer than the rest.
+  Scene out{root.name()->str(), {}, {}, decode_environment(*root.environment()), root.irradiance_range()};
   for (const fb::Part* part : *root.parts()) {
     if (part->positions()->size() > max_part_vertices)
       return fail(file, item_name("parts", out.parts.size()), "has more than 65535 vertices", "build the scene again");
@@ -221,8 +222,6 @@ Result<Scene> decode_scene_pack(std::span<const std::uint8_t> payload, const std
   for (const fb::View* view : *root.views())
     out.cameras.push_back(
         {view->name()->str(), point_of(*view->eye()), point_of(*view->target()), view->vertical_fov_deg()});
-  out.environment = decode_environment(*root.environment());
-  out.irradiance_range = root.irradiance_range();
   if (auto ok = check_scene(out, file); !ok) return tl::unexpected(ok.error());
   return out;
 }

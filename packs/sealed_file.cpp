@@ -75,6 +75,18 @@ bool read_all(int fd, std::span<std::uint8_t> bytes) {
   return true;
 }
 
+Result<void> check_size(std::uint64_t size, SealedKind kind, const std::string& file) {
+  if (size <= sealed_header_bytes)
+    return fail(file, "size", std::to_string(size) + " bytes are too few for a pack",
+                "the copy is cut short: copy it again");
+  if (size > max_file_bytes(kind))
+    return fail(file, "size",
+                std::to_string(size) + " bytes; a " + std::string(kind_name(kind)) + " has at most " +
+                    std::to_string(max_file_bytes(kind)),
+                "build a smaller pack");
+  return {};
+}
+
 Result<void> check_header(std::span<const std::uint8_t> bytes, SealedKind kind, const std::string& file) {
   const std::uint8_t* p = bytes.data();
   if (std::memcmp(p, magic.data(), magic.size()) != 0)
@@ -149,17 +161,19 @@ Result<SealedFile> SealedFile::open(const std::filesystem::path& path, SealedKin
   if (::fstat(fd.get(), &status) != 0 || !S_ISREG(status.st_mode))
     return fail(file, "", "is not a regular file", "give the path of a pack file");
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size <= sealed_header_bytes)
-    return fail(file, "size", std::to_string(size) + " bytes are too few for a pack",
-                "the copy is cut short: copy it again");
-  if (size > max_file_bytes(kind))
-    return fail(file, "size",
-                std::to_string(size) + " bytes; a " + std::string(kind_name(kind)) + " has at most " +
-                    std::to_string(max_file_bytes(kind)),
-                "build a smaller pack");
+  if (auto sized = check_size(size, kind, file); !sized) return tl::unexpected(sized.error());
   SealedFile out;
   if (auto loaded = out.load(fd.get(), static_cast<std::size_t>(size), backing, file); !loaded)
     return tl::unexpected(loaded.error());
+  if (auto checked = check_header(out.bytes_, kind, file); !checked) return tl::unexpected(checked.error());
+  return out;
+}
+
+Result<SealedFile> SealedFile::from_bytes(std::vector<std::uint8_t> bytes, SealedKind kind, const std::string& file) {
+  if (auto sized = check_size(bytes.size(), kind, file); !sized) return tl::unexpected(sized.error());
+  SealedFile out;
+  out.copy_ = std::move(bytes);
+  out.bytes_ = out.copy_;
   if (auto checked = check_header(out.bytes_, kind, file); !checked) return tl::unexpected(checked.error());
   return out;
 }

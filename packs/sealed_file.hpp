@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/error.hpp"
@@ -44,6 +45,10 @@ class SealedFile {
   /// Opens and checks size limits, magic, version, kind, exact length, reserved bytes and the digest, in that order.
   /// Errors name the file and the header field. The payload's first byte is aligned to 16 bytes or better.
   [[nodiscard]] static Result<SealedFile> open(const std::filesystem::path& path, SealedKind kind, Backing backing);
+
+  /// The same checks on bytes that were read elsewhere. `file` is for the errors.
+  [[nodiscard]] static Result<SealedFile> from_bytes(std::vector<std::uint8_t> bytes, SealedKind kind,
+                                                     const std::string& file);
 
   SealedFile(SealedFile&& other) noexcept;
   SealedFile& operator=(SealedFile&& other) noexcept;

@@ -28,6 +28,7 @@ Result<GlApi> GlApi::load(const GetProc& get_proc, const std::string& backend) {
   find(gl.ClearDepthf, "glClearDepthf");
   find(gl.ColorMask, "glColorMask");
   find(gl.CompileShader, "glCompileShader");
+  find(gl.CopyTexSubImage2D, "glCopyTexSubImage2D");
   find(gl.CreateProgram, "glCreateProgram");
   find(gl.CreateShader, "glCreateShader");
   find(gl.CullFace, "glCullFace");

@@ -36,6 +36,7 @@ struct GlApi {
   PFNGLCLEARDEPTHFPROC ClearDepthf = nullptr;
   PFNGLCOLORMASKPROC ColorMask = nullptr;
   PFNGLCOMPILESHADERPROC CompileShader = nullptr;
+  PFNGLCOPYTEXSUBIMAGE2DPROC CopyTexSubImage2D = nullptr;
   PFNGLCREATEPROGRAMPROC CreateProgram = nullptr;
   PFNGLCREATESHADERPROC CreateShader = nullptr;
   PFNGLCULLFACEPROC CullFace = nullptr;

@@ -130,8 +130,8 @@ Result<bool> PaintGpu::update(const core::Weights& weights) {
   if (auto checked = core::check_weights(*paint_, weights); !checked) return tl::unexpected(checked.error());
   const bool first = weights_.base.empty();
   const bool base = first || weights.base != weights_.base;
-  const bool flakes =
-      first || weights.flake_lightness != weights_.flake_lightness || weights.flake_colour != weights_.flake_colour;
+  const bool flakes = first || weights.flake_lightness != weights_.flake_lightness ||
+                      weights.flake_colour != weights_.flake_colour || weights.flake_white != weights_.flake_white;
   if (!base && !flakes) return false;
   if (flakes) {
     core::realise(*paint_, weights, realised_);

@@ -10,6 +10,8 @@
 #include "core/edit_distance.hpp"
 #include "input/touch.hpp"
 #include "kiosk/display/config_keys.hpp"
+#include "kiosk/display/interface_words.hpp"
+#include "kiosk/display/pin.hpp"
 #include "kiosk/display/stage.hpp"
 #include "kiosk/display/toml_gate.hpp"
 
@@ -153,6 +155,18 @@ struct Taker {
     if (found) *to = *found;
     return found.has_value();
   }
+  bool operator()(ui::Language* to) const {
+    const auto value = text(from);
+    const auto found = value ? language_of(*value) : std::nullopt;
+    if (found) *to = *found;
+    return found.has_value();
+  }
+  bool operator()(NightHours* to) const {
+    const auto value = text(from);
+    const auto found = value ? night_hours_of(*value) : std::nullopt;
+    if (found) *to = *found;
+    return found.has_value();
+  }
 };
 
 std::string full_name(std::string_view section, std::string_view key) {
@@ -171,6 +185,7 @@ class Reader {
     });
     read_list(root, touch_section(), config_.touch, input::max_touch_settings, [] { return input::TouchSettings{}; });
     check_panel(root);
+    check_interface(root);
   }
 
   void wrong(unsigned line, const std::string& field, std::string what, std::string remedy) {
@@ -303,6 +318,22 @@ class Reader {
     if (complained) return;
     if (const auto checked = check_profile(profile, file_); !checked)
       wrong(line, "panel: " + checked.error().field, checked.error().what, checked.error().remedy);
+  }
+
+  /// What a range or a list of words cannot say.
+  void check_interface(const toml::table& root) {
+    InterfaceSettings& interface = config_.interface;
+    const auto line_of = [&](const char* key) { return root["interface"][key].node()->source().begin.line; };
+    if (interface.dpi > 0.0 && interface.dpi < least_dpi) {
+      wrong(line_of("dpi"), "interface.dpi", "is less than any panel has", "0 takes what the panel says");
+      interface.dpi = 0.0;
+    }
+    // A PIN in plain digits is what this catches most often; it is not repeated in the message.
+    if (!interface.pin.empty() && !is_pin_hash(interface.pin)) {
+      wrong(line_of("pin"), "interface.pin", "is not the hash of a PIN", "lackwerk-kiosk --hash-pin makes one");
+      interface.pin.clear();
+    }
+    interface.experience.has_pin = !interface.pin.empty();
   }
 
   std::string file_;

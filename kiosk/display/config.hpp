@@ -12,17 +12,20 @@
 #include "core/error.hpp"
 #include "input/knob_settings.hpp"
 #include "input/touch_settings.hpp"
+#include "kiosk/display/experience_settings.hpp"
 #include "kiosk/display/output.hpp"
+#include "kiosk/display/pack_places.hpp"
 #include "kiosk/display/picture.hpp"
 
 namespace lackwerk::kiosk {
 
 struct Config {
-  std::vector<std::string> packs;  ///< .lwp files
-  std::string scene;               ///< .lws file
-  OutputSettings output;           ///< without size and context, which are for the command line; profile: of [panel]
-  std::string seat = "auto";       ///< who opens the devices: Seat::open()
+  PackPlaces packs;           ///< what is shown
+  std::string scene;          ///< .lws file
+  OutputSettings output;      ///< without size and context, which are for the command line; profile: of [panel]
+  std::string seat = "auto";  ///< who opens the devices: Seat::open()
   PictureSettings picture;
+  InterfaceSettings interface;
   std::string icc;  ///< if not empty, the profile is in this file (read_icc) and output.profile is sRGB
   std::string input_seat = "seat0";  ///< udev's name of the seat whose touch screens are ours
   std::vector<input::TouchSettings> touch;

@@ -16,6 +16,8 @@ constexpr double max_packs = 64.0;
 /// Faster than any panel.
 constexpr double max_refresh_hz = 1000.0;
 constexpr double max_frame_ms = 1000.0;
+/// Darker than this a visitor takes the panel for broken.
+constexpr double least_brightness = 0.2;
 
 std::vector<std::string> seat_words() { return {"auto", "libseat", "direct"}; }
 
@@ -59,6 +61,42 @@ std::vector<Key<Config>> knobs_keys() {
   return keys;
 }
 
+Section<Config> interface_section() {
+  return {"interface",
+          "What lies on the picture, and how it behaves towards visitors and dealers.",
+          {{"shown", [](Config& c) -> Slot { return &c.interface.shown; },
+            "false: the picture alone, as for recordings of paints."},
+           {"language", [](Config& c) -> Slot { return &c.interface.experience.language; },
+            "Of all texts: English, German or Arabic. The dealer may choose another on the screen."},
+           {"dpi", [](Config& c) -> Slot { return &c.interface.dpi; },
+            "Dots per inch of the panel, 30 or more: buttons are made large enough for fingers by it. 0: as the panel "
+            "says, else 96.",
+            0.0, 600.0},
+           {"idle_s", [](Config& c) -> Slot { return &c.interface.experience.idle_s; },
+            "Seconds without a touch or a turn until the countdown shows.", 5.0, 3600.0},
+           {"countdown_s", [](Config& c) -> Slot { return &c.interface.experience.countdown_s; },
+            "Seconds of the countdown. Then everything is reset for the next visitor.", 3.0, 60.0},
+           {"night", [](Config& c) -> Slot { return &c.interface.experience.night; },
+            "Local time in which the panel is off until somebody touches it. Empty: never."},
+           {"beyond", [](Config& c) -> Slot { return &c.interface.experience.beyond_allowed; },
+            "Visitors may go beyond the measured paints, as far as the pack says."},
+           {"reduced_motion", [](Config& c) -> Slot { return &c.interface.experience.reduced_motion; },
+            "Nothing moves by itself but the paints."},
+           {"tour", [](Config& c) -> Slot { return &c.interface.experience.tour; },
+            "false: while nobody is there, the first paint is shown and nothing moves."},
+           {"brightness", [](Config& c) -> Slot { return &c.interface.experience.brightness; },
+            "Of the picture, as a part of what the panel can. The dealer may choose another on the screen.",
+            least_brightness, 1.0},
+           {"pin", [](Config& c) -> Slot { return &c.interface.pin; },
+            "Opens the dealer's screen: what lackwerk-kiosk --hash-pin prints, not the PIN itself. Empty: there is no "
+            "dealer's screen.",
+            0.0, max_text},
+           {"drift_px", [](Config& c) -> Slot { return &c.interface.drift_px; },
+            "The picture wanders slowly by up to this many pixels, against burn-in.", 0.0, 24.0},
+           {"attract_brightness", [](Config& c) -> Slot { return &c.interface.attract_brightness; },
+            "Of the picture while nobody is there.", least_brightness, 1.0}}};
+}
+
 std::vector<Key<KnobMatch>> knob_keys() {
   std::vector<Key<KnobMatch>> keys{
       {"match", [](KnobMatch& k) -> Slot { return &k.match; },
@@ -95,8 +133,14 @@ const std::vector<Section<Config>>& config_sections() {
   static const std::vector<Section<Config>> sections{
       {"",
        "What is shown.",
-       {{"packs", [](Config& c) -> Slot { return &c.packs; }, "Paint packs (.lwp). Needed here or on the command line.",
-         0.0, max_packs},
+       {{"packs", [](Config& c) -> Slot { return &c.packs.files; },
+         "Paint packs (.lwp): the first is shown. Empty: what the store holds.", 0.0, max_packs},
+        {"store", [](Config& c) -> Slot { return &c.packs.store; },
+         "The dealer's store of packs (lackwerk store, USB sticks).", 1.0, max_text},
+        {"keyring", [](Config& c) -> Slot { return &c.packs.keyring; },
+         "Folder of minisign public keys (*.pub) whose packs are shown.", 1.0, max_text},
+        {"allow_unsigned", [](Config& c) -> Slot { return &c.packs.allow_unsigned; },
+         "Show packs without a signature too, and say so. One with a bad signature is never shown."},
         {"scene", [](Config& c) -> Slot { return &c.scene; },
          "The car and its surroundings (.lws). Needed here or on the command line.", 0.0, max_text}}},
       {"display",
@@ -138,6 +182,7 @@ const std::vector<Section<Config>>& config_sections() {
          most_exponent},
         {"gamut_warning", [](Config& c) -> Slot { return &c.output.gamut_warning; },
          "Mark colours that the panel cannot show."}}},
+      interface_section(),
       {"input",
        "Fingers.",
        {{"udev_seat", [](Config& c) -> Slot { return &c.input_seat; },

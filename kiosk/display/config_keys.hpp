@@ -23,7 +23,8 @@ using Mode = std::array<int, 2>;
 
 /// Where a value lives.
 using Slot = std::variant<bool*, int*, double*, std::string*, std::vector<std::string>*, Platform*, Rotation*, Mode*,
-                          Chromaticity*, Curves*, std::optional<input::CalibrationMatrix>*, input::KnobProfile*>;
+                          Chromaticity*, Curves*, std::optional<input::CalibrationMatrix>*, input::KnobProfile*,
+                          ui::Language*, NightHours*>;
 
 template <class Owner>
 struct Key {
@@ -48,6 +49,8 @@ struct Section {
 [[nodiscard]] const Section<input::TouchSettings>& touch_section();
 
 inline constexpr std::size_t max_knob_settings = 16;
+/// Below this no panel that fingers can use has its dots; 0 stands for "as the panel says".
+inline constexpr double least_dpi = 30.0;
 /// Bounds of an exponent of a panel's curve: power_curve()'s.
 inline constexpr double least_exponent = 1.0, most_exponent = 4.0;
 

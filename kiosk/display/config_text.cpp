@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "kiosk/display/config_keys.hpp"
+#include "kiosk/display/interface_words.hpp"
 
 namespace lackwerk::kiosk {
 namespace {
@@ -50,6 +51,8 @@ struct Writer {
     return *value ? list(**value) : "[]";
   }
   std::string operator()(const input::KnobProfile* value) const { return in_quotes(word_of(*value)); }
+  std::string operator()(const ui::Language* value) const { return in_quotes(word_of(*value)); }
+  std::string operator()(const NightHours* value) const { return in_quotes(text_of(*value)); }
 };
 
 /// What each kind of value is called.
@@ -86,6 +89,8 @@ struct Namer {
     return "[], or six numbers, two rows of a matrix that can be inverted";
   }
   std::string operator()(const input::KnobProfile* /*value*/) const { return one_of(profile_words()); }
+  std::string operator()(const ui::Language* /*value*/) const { return one_of(language_words()); }
+  std::string operator()(const NightHours* /*value*/) const { return "\"\" or hours as \"20:00-08:00\""; }
 };
 
 /// Comment lines of at most line_width.

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 #include "core/colour.hpp"
+#include "kiosk/display/choices.hpp"
+#include "kiosk/display/interface_words.hpp"
+#include "kiosk/display/targets.hpp"
 #include "render_gles/context.hpp"
 
 namespace lackwerk::kiosk {
@@ -15,31 +19,53 @@ constexpr double script_step_ms = 1000.0 / 30.0;
 constexpr double report_every_ms = 500.0;
 /// Of panels without a vertical blank that could be known: a usual panel's.
 constexpr double usual_period_ms = 1000.0 / 60.0;
+/// What moves by itself while nobody can see it.
+constexpr double unseen_step_ms = 1000.0;
+/// Swatches are drawn when nobody has touched anything for so long: each takes some frames.
+constexpr double hands_off_ms = 500.0;
+/// And when the picture rests, or this long after the first one.
+constexpr double most_swatch_delay_ms = 3000.0;
 
 }  // namespace
 
-Live::Live(Output& output, Stage& stage, Picture& picture, State& state, Devices devices,
+int local_minute() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return local.tm_hour * 60 + local.tm_min;
+}
+
+Live::Live(Output& output, Stage& stage, Picture& picture, Interface& interface, Devices devices,
            std::optional<input::ScriptPlayer> script, Log& log, Service& service, LiveSettings settings)
     : output_(output),
       stage_(stage),
       picture_(picture),
-      state_(state),
+      interface_(interface),
       devices_(std::move(devices)),
       script_(std::move(script)),
       log_(log),
       service_(service),
       settings_(std::move(settings)),
-      gestures_(stage.pack().paint().paints.size(), stage.scene().cameras.front().name),
-      started_ms_(monotonic_ms()) {}
+      started_ms_(monotonic_ms()) {
+  if (!settings_.minute_of_day) settings_.minute_of_day = local_minute;
+}
 
-void Live::apply(const input::Control& control) {
-  const State::Changes changes = state_.apply(control);
+void Live::apply(const Interface::Changes& changes, std::uint64_t time_us) {
   weights_changed_ |= changes.weights;
-  report_due_ |= changes.weights;
-  if (changes.any()) latency_.input(control.time_us);
+  report_due_ |= changes.weights || changes.interface;
+  if (changes.any()) latency_.input(time_us);
+}
+
+void Live::take_script(double now_ms) {
+  if (!script_ || script_->finished()) return;
+  // Its times are ms since the start; nobody waits for a script, so it says nothing of latency.
+  for (const input::Control& event : script_->advance(now_ms - started_ms_)) apply(interface_.take(event, now_ms), 0);
+  if (const auto complaint = interface_.take_complaint()) log_.write(Priority::warning, complaint->line());
 }
 
 void Live::take_input(double now_ms) {
+  if (settings_.visit) apply(interface_.begin_visit(now_ms), 0);
+  settings_.visit = false;
   controls_.clear();
   for (const auto& source : devices_.sources) {
     source->read(now_ms, controls_);
@@ -49,13 +75,71 @@ void Live::take_input(double now_ms) {
     log_.write(notice.problem ? Priority::warning : Priority::info, notice.text);
   report_due_ |= !notices_.empty();
   notices_.clear();
-  if (script_ && !script_->finished()) {
-    const auto scripted = script_->advance(now_ms - started_ms_);
-    controls_.insert(controls_.end(), scripted.begin(), scripted.end());
+  if (!controls_.empty()) touched_ms_ = now_ms;
+  for (const input::Control& control : controls_) apply(interface_.take(control, now_ms), control.time_us);
+  take_script(now_ms);
+  apply(interface_.advance(now_ms, settings_.minute_of_day()), 0);
+  keep_choices();
+  sleep_or_wake();
+  if (interface_.wants_facts(now_ms)) {
+    ui::DealerFacts facts{status(), {}};
+    for (auto entry = facts.status.problems.rbegin(); entry != facts.status.problems.rend(); ++entry)
+      facts.log.push_back(entry->text);
+    interface_.show_facts(std::move(facts), now_ms);
   }
-  for (const input::Control& control : controls_)
-    for (const input::Control& meant : gestures_.take(control)) apply(meant);
-  for (const input::Control& meant : gestures_.advance(now_ms)) apply(meant);
+}
+
+void Live::keep_choices() {
+  const auto choices = interface_.take_choices();
+  if (!choices || settings_.choices_folder.empty()) return;
+  if (auto written = write_choices(settings_.choices_folder, *choices); !written) log_.error(written.error());
+}
+
+void Live::sleep_or_wake() {
+  const bool asleep = interface_.model().asleep;
+  if (asleep == asleep_) return;
+  asleep_ = asleep;
+  output_.set_power(!asleep);
+  damaged_ = true;
+  report_due_ = true;
+  log_.info(asleep ? "night: the panel is off" : "the panel is on");
+}
+
+bool Live::wants_swatch(double now_ms) const {
+  return interface_.wants_swatch() && !asleep_ && handed_over_ > 0 && now_ms >= touched_ms_ + hands_off_ms &&
+         (picture_.resting() || now_ms >= started_ms_ + most_swatch_delay_ms);
+}
+
+void Live::make_swatch(double now_ms) {
+  if (!wants_swatch(now_ms)) return;
+  interface_.make_swatch();
+  report_due_ |= !interface_.wants_swatch();
+}
+
+void Live::take_pack(double now_ms) {
+  if (settings_.packs == nullptr) return;
+  auto news = settings_.packs->poll();
+  if (!news) {
+    // What is shown stays: a pack that fails here never shows.
+    log_.error(news.error());
+    report_due_ = true;
+    return;
+  }
+  if (!*news) return;
+  ShownPack& next = **news;
+  if (auto taken = stage_.set_pack(std::move(next.pack)); !taken) {
+    log_.error(taken.error());
+    report_due_ = true;
+    return;
+  }
+  settings_.pack_file = next.file;
+  settings_.pack_signed = next.is_signed;
+  interface_.content_changed(now_ms, next.is_vouched);
+  weights_changed_ = true;
+  report_due_ = true;
+  const packs::PackInfo& info = stage_.pack().info();
+  log_.notice("showing " + info.id + " " + std::to_string(info.serial) +
+              (next.is_signed ? "" : ", which is not signed"));
 }
 
 Result<void> Live::fit_output() {
@@ -81,7 +165,7 @@ Result<void> Live::fit_output() {
     if (auto sized = stage_.resize(size[0], size[1]); !sized) return sized;
     picture_.lost();
   }
-  gestures_.set_rotation(mode.rotation, mode.panel_px);
+  interface_.set_surface(mode.rotation, mode.panel_px);
   fitted_ = true;
   return {};
 }
@@ -92,8 +176,9 @@ double Live::frame_period_ms() const {
 }
 
 bool Live::wants_frame() const {
-  return output_.state() == OutputState::running && output_.ready() &&
-         (damaged_ || weights_changed_ || !picture_.resting() || picture_.differs(state_));
+  return output_.state() == OutputState::running && output_.ready() && !asleep_ &&
+         (damaged_ || weights_changed_ || interface_.stale() || !picture_.resting() ||
+          picture_.differs(interface_.shown()));
 }
 
 Result<void> Live::show() {
@@ -103,12 +188,15 @@ Result<void> Live::show() {
   }
   // A frame is drawn when the one before has been shown, not earlier: what is drawn then holds the newest input.
   if (!wants_frame()) return {};
-  const auto drawn = picture_.step(state_, weights_changed_);
+  weights_changed_ |= interface_.compare(!weights_changed_ && !picture_.differs(interface_.shown()));
+  const auto drawn = picture_.step(interface_.shown(), weights_changed_);
   if (!drawn) return tl::unexpected(drawn.error());
   weights_changed_ = false;
-  damaged_ |= *drawn != Picture::Step::nothing;
+  damaged_ |= *drawn != Picture::Step::nothing || interface_.stale();
   if (!damaged_) return {};
-  const auto presented = output_.present(stage_.framebuffer());
+  const auto composed = interface_.compose(stage_.framebuffer());
+  if (!composed) return tl::unexpected(composed.error());
+  const auto presented = output_.present(**composed);
   if (!presented) return tl::unexpected(presented.error());
   if (*presented == Presented::refused) return {};
   damaged_ = false;
@@ -150,9 +238,12 @@ void Live::check_gamut() {
 
 Result<void> Live::step(double now_ms) {
   if (auto dispatched = output_.dispatch(now_ms); !dispatched) return dispatched;
+  stepped_ms_ = now_ms;
+  take_pack(now_ms);
   take_input(now_ms);
   if (auto fitted = fit_output(); !fitted) return fitted;
   if (auto shown = show(); !shown) return shown;
+  make_swatch(now_ms);
   report(now_ms);
   service_.progress(now_ms);
   return {};
@@ -166,11 +257,16 @@ Status Live::status() const {
   status.refused = settings_.refused;
   status.mode = output_.mode();
   const auto& paints = stage_.pack().paint().paints;
-  PackStatus pack{settings_.pack_file, stage_.pack().info().id, stage_.pack().info().serial, {}};
+  PackStatus pack{settings_.pack_file, stage_.pack().info().id, stage_.pack().info().serial, settings_.pack_signed, {}};
   for (const auto& paint : paints) pack.paints.push_back(paint.identity.name);
   status.packs.push_back(std::move(pack));
-  status.weights = state_.weights();
-  status.resting = picture_.resting() && !damaged_;
+  status.weights = interface_.experience().state().weights();
+  if (interface_.is_shown()) {
+    status.screen = screen_name(interface_.model().screen);
+    status.controls = interface_.controls();
+  }
+  status.language = word_of(interface_.model().language);
+  status.resting = picture_.resting() && !damaged_ && !interface_.stale() && !interface_.wants_swatch();
   status.quality = picture_.quality();
   status.drawn = picture_.drawn();
   status.refined = picture_.refined();
@@ -203,19 +299,35 @@ void Live::stop() {
 
 void Live::add_descriptors(std::vector<int>& out) const {
   output_.add_descriptors(out);
+  if (settings_.packs != nullptr && settings_.packs->fd() >= 0) out.push_back(settings_.packs->fd());
   for (const auto& source : devices_.sources) source->add_descriptors(out);
+}
+
+/// When the interface wants its next step. What moves by itself goes on with the next frame: a panel that is busy wakes
+/// us with its flip, and one that is never busy must not be driven faster than eyes see.
+double Live::moves_at_ms(double now_ms) const {
+  const double wake = interface_.wake_at_ms(now_ms);
+  if (wake > now_ms) return wake;
+  if (output_.state() != OutputState::running) return stepped_ms_ + unseen_step_ms;
+  return output_.ready() ? stepped_ms_ + usual_period_ms : output_.wake_at_ms();
 }
 
 double Live::wake_at_ms(double now_ms) const {
   if (wants_frame()) return now_ms;
   double wake = std::min(output_.wake_at_ms(), service_.wake_at_ms());
-  wake = std::min(wake, gestures_.wake_at_ms());
+  wake = std::min(wake, moves_at_ms(now_ms));
+  if (interface_.wants_swatch() && !asleep_ && handed_over_ > 0)
+    wake = std::min(
+        wake, std::max(touched_ms_ + hands_off_ms, picture_.resting() ? now_ms : started_ms_ + most_swatch_delay_ms));
   for (const auto& source : devices_.sources) wake = std::min(wake, source->wake_at_ms());
   if (script_ && !script_->finished()) wake = std::min(wake, now_ms + script_step_ms);
   if (report_due_ && !settings_.status_folder.empty()) wake = std::min(wake, reported_ms_ + report_every_ms);
   return wake;
 }
 
-bool Live::finished() const { return script_ && script_->finished() && picture_.resting() && !damaged_; }
+bool Live::finished() const {
+  return script_ && script_->finished() && picture_.resting() && !damaged_ && !interface_.stale() &&
+         !interface_.wants_swatch();
+}
 
 }  // namespace lackwerk::kiosk

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "input/script.hpp"
+#include "kiosk/display/interface.hpp"
 #include "kiosk/display/options.hpp"
 #include "kiosk/display/picture.hpp"
 
@@ -33,10 +34,19 @@ struct RunSummary {
 void request_stop() noexcept;
 [[nodiscard]] bool stop_asked() noexcept;
 
-/// The script of the options, from the state's weights; nothing if none is named.
-[[nodiscard]] Result<std::optional<input::ScriptPlayer>> open_script(const Options& options, const State& state);
+struct OpenedScript {
+  std::optional<input::ScriptPlayer> player;  ///< nothing if none is named
+  /// It begins by setting values (weights, orbit, ...): nobody would see the attract screen go. One that begins with a
+  /// finger or a knob starts as the kiosk does.
+  bool visit = false;
+};
+/// The script of the options, from the state's weights.
+[[nodiscard]] Result<OpenedScript> open_script(const Options& options, const State& state);
+/// The interface of the options, with what the dealer has chosen over them.
+[[nodiscard]] Result<std::unique_ptr<Interface>> open_interface(const Options& options, Stage& stage, bool vouched,
+                                                                Log& log);
 /// Fills in what stage and picture know, and writes the screenshot if one is asked for.
-[[nodiscard]] Result<RunSummary> summarise(const Options& options, Stage& stage, Picture& picture, const State& state,
+[[nodiscard]] Result<RunSummary> summarise(const Options& options, Stage& stage, Picture& picture, Interface& interface,
                                            RunSummary summary);
 
 }  // namespace lackwerk::kiosk

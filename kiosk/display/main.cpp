@@ -1,11 +1,16 @@
 // lackwerk-kiosk: the program that runs in the showroom.
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <iostream>
+#include <string>
 
 #include "kiosk/display/config_text.hpp"
+#include "kiosk/display/import.hpp"
 #include "kiosk/display/loop.hpp"
 #include "kiosk/display/options.hpp"
+#include "kiosk/display/pin.hpp"
 
 namespace {
 
@@ -18,6 +23,26 @@ int report(const lackwerk::Error& error) {
 
 void on_signal(int /*number*/) { lackwerk::kiosk::request_stop(); }
 
+/// A PIN from standard input, its line for kiosk.toml to standard output.
+int hash_typed_pin() {
+  std::string typed;
+  std::getline(std::cin, typed);
+  const auto line = lackwerk::kiosk::pin_line(typed);
+  if (!line) return report(line.error());
+  std::fputs(line->c_str(), stdout);
+  return exit_done;
+}
+
+/// Packs of a stick into the store; what became of them for the kiosk that runs beside this.
+int import_from(const lackwerk::kiosk::Options& options) {
+  const char* run_time = std::getenv("RUNTIME_DIRECTORY");
+  const auto& packs = options.config.packs;
+  const auto good = lackwerk::kiosk::import_stick(
+      {options.import, packs.store, packs.keyring, run_time != nullptr ? run_time : "/run/lackwerk"});
+  if (!good) return report(good.error());
+  return *good ? exit_done : exit_failed;
+}
+
 int run(int argc, char** argv) {
   const auto options = lackwerk::kiosk::parse_options(argc, argv);
   if (!options) return report(options.error());
@@ -29,6 +54,8 @@ int run(int argc, char** argv) {
     std::fputs(lackwerk::kiosk::config_text().c_str(), stdout);
     return exit_done;
   }
+  if (options->hash_pin) return hash_typed_pin();
+  if (!options->import.empty()) return import_from(*options);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const auto summary = lackwerk::kiosk::run(*options);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kiosk/display/interface_words.hpp"
 #include "kiosk/display/stage.hpp"
 #include "render_gles/accumulator.hpp"
 #include "render_gles/governor.hpp"
@@ -56,6 +57,12 @@ enum Option {
   quality,
   frame_ms,
   still_frames,
+  no_interface,
+  language,
+  hash_pin,
+  import_from,
+  store,
+  keyring,
   help,
   version
 };
@@ -78,7 +85,7 @@ const char* help_text() {
   return "Usage: lackwerk-kiosk [--config kiosk.toml] [--pack PACK.lwp]... [--scene SCENE.lws] [options]\n"
          "Shows a pack's paints on a scene and morphs between them. Options stand over the configuration file.\n\n"
          "  --config FILE           configuration (kiosk.toml); --sample-config prints one with every key and default\n"
-         "  --pack PACK.lwp         paints to show (needed here or in the file)\n"
+         "  --pack PACK.lwp         paints to show, signed or not; without it what the file says, or the store holds\n"
          "  --scene SCENE.lws       what to show them on (needed here or in the file)\n"
          "  --platform NAME         auto (default: the first of kms, dumb, fbdev that can be had; with --frames:\n"
          "                          surfaceless), kms, dumb, fbdev;\n"
@@ -101,6 +108,12 @@ const char* help_text() {
          "  --frame-ms N            frame time that auto holds, 1 to 1000 ms (default 62)\n"
          "  --still-frames N        frames a picture that does not change is refined with, 0 (never) to 256 (default "
          "128)\n"
+         "  --no-interface          the picture alone\n"
+         "  --language WORD         of the texts: en, de or ar\n"
+         "  --hash-pin              read a PIN of 4 to 12 digits from standard input, print the line for kiosk.toml\n"
+         "  --import DIR            take the packs of the stick that is mounted there into the store, then end\n"
+         "  --store DIR             the dealer's store of packs (default /var/lib/lackwerk/store)\n"
+         "  --keyring DIR           keys whose packs are shown and imported (default /etc/lackwerk/keys)\n"
          "  --screenshot OUT.png    write the last picture in still quality\n"
          "  --help, --version\n\n"
          "With RUNTIME_DIRECTORY set (as systemd does), status.json is kept there: see docs/kiosk.md.\n"
@@ -108,7 +121,7 @@ const char* help_text() {
 }
 
 Result<Options> parse_options(int argc, char** argv) {
-  static constexpr std::array<::option, 21> known{{{"config", required_argument, nullptr, config_file},
+  static constexpr std::array<::option, 27> known{{{"config", required_argument, nullptr, config_file},
                                                    {"pack", required_argument, nullptr, pack},
                                                    {"scene", required_argument, nullptr, scene},
                                                    {"platform", required_argument, nullptr, platform},
@@ -126,11 +139,18 @@ Result<Options> parse_options(int argc, char** argv) {
                                                    {"quality", required_argument, nullptr, quality},
                                                    {"frame-ms", required_argument, nullptr, frame_ms},
                                                    {"still-frames", required_argument, nullptr, still_frames},
+                                                   {"no-interface", no_argument, nullptr, no_interface},
+                                                   {"language", required_argument, nullptr, language},
+                                                   {"hash-pin", no_argument, nullptr, hash_pin},
+                                                   {"import", required_argument, nullptr, import_from},
+                                                   {"store", required_argument, nullptr, store},
+                                                   {"keyring", required_argument, nullptr, keyring},
                                                    {"help", no_argument, nullptr, help},
                                                    {"version", no_argument, nullptr, version},
                                                    {nullptr, 0, nullptr, 0}}};
   Options options;
   std::vector<std::string> named_packs;
+  bool store_named = false;
   if (const char* file = config_named(argc, argv)) {
     auto config = read_config(file);
     if (!config) return tl::unexpected(config.error());
@@ -142,6 +162,16 @@ Result<Options> parse_options(int argc, char** argv) {
     switch (found) {
       case config_file:
         break;  // read before the others, so that they stand over it
+      case import_from:
+        options.import = optarg;
+        break;
+      case store:
+        options.config.packs.store = optarg;
+        store_named = true;
+        break;
+      case keyring:
+        options.config.packs.keyring = optarg;
+        break;
       case pack:
         named_packs.emplace_back(optarg);
         break;
@@ -223,6 +253,18 @@ Result<Options> parse_options(int argc, char** argv) {
         options.config.picture.still_frames = *count;
         break;
       }
+      case no_interface:
+        options.config.interface.shown = false;
+        break;
+      case language: {
+        const auto named = language_of(optarg);
+        if (!named) return usage("--language", "unknown language '" + std::string(optarg) + "'", "use en, de or ar");
+        options.config.interface.experience.language = *named;
+        break;
+      }
+      case hash_pin:
+        options.hash_pin = true;
+        return options;
       case help:
         options.help = true;
         return options;
@@ -234,9 +276,15 @@ Result<Options> parse_options(int argc, char** argv) {
     }
   }
   if (optind < argc) return usage(argv[optind], "is not an option", "see --help");
-  if (!named_packs.empty()) options.config.packs = std::move(named_packs);
-  if (options.config.packs.empty())
-    return usage("--pack", "no paint pack given", "--pack PACK.lwp, or packs in --config");
+  if (!named_packs.empty()) {
+    options.config.packs.files = std::move(named_packs);
+    // Whoever types a pack's name answers for it.
+    options.config.packs.allow_unsigned = true;
+    options.config.packs.mark_unsigned = false;
+  }
+  if (!options.import.empty()) return options;
+  if (options.config.packs.files.empty() && config_named(argc, argv) == nullptr && !store_named)
+    return usage("--pack", "no paint pack given", "--pack PACK.lwp, or --store DIR, or --config FILE");
   if (options.config.scene.empty())
     return usage("--scene", "no scene given", "--scene SCENE.lws, or scene in --config");
   // Counted frames are for tests and recordings: they need no panel unless one is named.
@@ -244,6 +292,7 @@ Result<Options> parse_options(int argc, char** argv) {
     options.config.output.platform = Platform::surfaceless;
   if (!options.record.empty() && !options.frames)
     return usage("--record", "records frames of a virtual clock", "give --frames N too");
+  options.config.picture.keep_free = options.config.interface.shown ? KeepFree::interface : KeepFree::nothing;
   if (!options.config.icc.empty()) {
     auto profile = read_icc(options.config.icc);
     if (!profile) return tl::unexpected(profile.error());

@@ -16,7 +16,8 @@ struct Options {
   std::optional<int> frames;  ///< on a virtual clock of 30 a second on headless platforms; else pictures on the panel
   std::string input_script, screenshot, record;
   int record_samples = 1;  ///< samples a pixel of recorded frames
-  bool help = false, version = false, sample_config = false;
+  std::string import;      ///< take packs from the stick that is mounted there, instead of showing anything
+  bool help = false, version = false, sample_config = false, hash_pin = false;
 
   /// Platforms without a panel can run on a virtual clock, and have no devices.
   [[nodiscard]] bool headless() const {

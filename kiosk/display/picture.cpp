@@ -29,12 +29,12 @@ Picture::Picture(Stage& stage, const PictureSettings& settings)
 
 Result<void> Picture::prepare(const State& state) {
   if (auto updated = stage_.renderer().update(state.weights()); !updated) return updated;
-  stage_.renderer().prepare(gles::View::from(state.camera()), lighting(state), stage_.framebuffer());
+  stage_.renderer().prepare(view(state), lighting(state), stage_.framebuffer());
   return {};
 }
 
 bool Picture::differs(const State& state) const {
-  return stage_.renderer().needs_draw(gles::View::from(state.camera()), lighting(state), stage_.framebuffer());
+  return stage_.renderer().needs_draw(view(state), lighting(state), stage_.framebuffer());
 }
 
 Result<Picture::Step> Picture::step(const State& state, bool weights_changed) {
@@ -44,12 +44,12 @@ Result<Picture::Step> Picture::step(const State& state, bool weights_changed) {
     if (auto updated = renderer.update(state.weights()); !updated) return tl::unexpected(updated.error());
     realise_ms_.add(monotonic_ms() - start);
   }
-  const gles::View view = gles::View::from(state.camera());
+  const gles::View shown = view(state);
   // A new quality alone is no reason to draw: it would show as a step in a picture that rests.
   if (!differs(state)) return rest(state);
   quality_ = (fixed_ != nullptr ? *fixed_ : governor_.rung()).quality;
   const std::uint64_t programs = renderer.program_count();
-  renderer.draw(view, lighting(state), stage_.framebuffer());
+  renderer.draw(shown, lighting(state), stage_.framebuffer());
   stage_.context().gl().Finish();
   drawn_ms_.add(monotonic_ms() - start);
   ++drawn_;
@@ -67,8 +67,8 @@ Result<Picture::Step> Picture::rest(const State& state) {
     return Step::nothing;
   }
   const double start = monotonic_ms();
-  const auto refined = stage_.renderer().refine(gles::View::from(state.camera()), lighting(state), stage_.framebuffer(),
-                                                settings_.still_frames, strips_);
+  const auto refined =
+      stage_.renderer().refine(view(state), lighting(state), stage_.framebuffer(), settings_.still_frames, strips_);
   if (!refined) return tl::unexpected(refined.error());
   stage_.context().gl().Finish();
   still_frame_ms_ += monotonic_ms() - start;
@@ -84,11 +84,15 @@ Result<Picture::Step> Picture::rest(const State& state) {
 }
 
 gles::Image Picture::still(const State& state, int samples) {
-  return stage_.renderer().still(gles::View::from(state.camera()), lighting(state), stage_.framebuffer(), samples);
+  return stage_.renderer().still(view(state), lighting(state), stage_.framebuffer(), samples);
+}
+
+gles::View Picture::view(const State& state) const {
+  return framed(state.camera(), stage_.framebuffer().width(), stage_.framebuffer().height(), settings_.keep_free);
 }
 
 gles::Lighting Picture::lighting(const State& state) const {
-  gles::Lighting lighting = lighting_of(usual_mood(state.camera().name));
+  gles::Lighting lighting = lighting_of(state.camera(), state.light(), state.dimmer());
   lighting.quality = quality_;
   return lighting;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "kiosk/display/framing.hpp"
 #include "kiosk/display/stage.hpp"
 #include "kiosk/display/state.hpp"
 #include "render_gles/governor.hpp"
@@ -21,6 +22,7 @@ struct PictureSettings {
   std::string quality = "auto";           ///< a rung of gles::quality_ladder, or auto
   int frame_ms = 62;                      ///< what auto holds
   int still_frames = gles::still_frames;  ///< 0: a picture that does not change is left as it moved
+  KeepFree keep_free = KeepFree::nothing;
 };
 
 class Picture {
@@ -58,6 +60,7 @@ class Picture {
   [[nodiscard]] double realise_ms_median() const;
 
  private:
+  [[nodiscard]] gles::View view(const State& state) const;
   [[nodiscard]] gles::Lighting lighting(const State& state) const;
   [[nodiscard]] Result<Step> rest(const State& state);
 

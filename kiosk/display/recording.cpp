@@ -12,6 +12,8 @@ namespace lackwerk::kiosk {
 namespace {
 
 constexpr double frame_ms = 1000.0 / 30.0;
+/// A recording is made in no night.
+constexpr int noon_minute = 12 * 60;
 
 Result<void> make_folder(const std::string& folder) {
   std::error_code code;
@@ -26,33 +28,53 @@ std::string frame_path(const std::string& folder, std::uint64_t frame) {
   return (std::filesystem::path(folder) / name).string();
 }
 
+/// What is seen, at the options' samples a pixel.
+Result<void> write_frame(const Options& options, Stage& stage, Picture& picture, Interface& interface,
+                         std::uint64_t frame) {
+  // As shown, or smoother: with several samples the frame is drawn again, moved by parts of a pixel.
+  if (options.record_samples > 1) (void)picture.still(interface.shown(), options.record_samples);
+  const auto composed = interface.compose(stage.framebuffer());
+  if (!composed) return tl::unexpected(composed.error());
+  return gles::write_png((*composed)->read(), frame_path(options.record, frame));
+}
+
 }  // namespace
 
-Result<RunSummary> record(const Options& options, Stage& stage) {
-  State state(static_cast<int>(stage.pack().paint().paints.size()), stage.scene().cameras);
-  auto player = open_script(options, state);
-  if (!player) return tl::unexpected(player.error());
+Result<RunSummary> record(const Options& options, Stage& stage, bool vouched) {
+  Log log(stderr);
+  auto opened = open_interface(options, stage, vouched, log);
+  if (!opened) return tl::unexpected(opened.error());
+  Interface& interface = **opened;
+  interface.set_surface(Rotation::none, {stage.framebuffer().width(), stage.framebuffer().height()});
+  auto script = open_script(options, interface.shown());
+  if (!script) return tl::unexpected(script.error());
   if (!options.record.empty())
     if (auto made = make_folder(options.record); !made) return tl::unexpected(made.error());
+  // Before the first frame, so that every one of them is the same wherever it is made.
+  while (interface.wants_swatch()) interface.make_swatch();
 
   Picture picture(stage, options.config.picture);
-  if (auto prepared = picture.prepare(state); !prepared) return tl::unexpected(prepared.error());
+  if (auto prepared = picture.prepare(interface.shown()); !prepared) return tl::unexpected(prepared.error());
+  if (script->visit) interface.begin_visit(0.0);
   RunSummary summary;
   const auto count = static_cast<std::uint64_t>(*options.frames);
   for (; summary.frames < count && !stop_asked(); ++summary.frames) {
-    bool weights_changed = false;
-    if (*player)
-      for (const input::Control& event : (*player)->advance(static_cast<double>(summary.frames) * frame_ms))
-        weights_changed |= state.apply(event).weights;
-    if (auto stepped = picture.step(state, weights_changed); !stepped) return tl::unexpected(stepped.error());
+    const double now_ms = static_cast<double>(summary.frames) * frame_ms;
+    Interface::Changes changes;
+    if (script->player)
+      for (const input::Control& event : script->player->advance(now_ms)) changes |= interface.take(event, now_ms);
+    if (auto complaint = interface.take_complaint())
+      return fail(options.input_script, "at " + std::to_string(static_cast<long>(now_ms)) + " ms", complaint->what,
+                  complaint->remedy);
+    changes |= interface.advance(now_ms, noon_minute);
+    const bool other = interface.compare(!changes.weights && !picture.differs(interface.shown()));
+    if (auto stepped = picture.step(interface.shown(), changes.weights || other); !stepped)
+      return tl::unexpected(stepped.error());
     if (options.record.empty()) continue;
-    // As shown, or smoother: with several samples the frame is drawn again, moved by parts of a pixel.
-    const gles::Image image =
-        options.record_samples == 1 ? stage.framebuffer().read() : picture.still(state, options.record_samples);
-    if (auto written = gles::write_png(image, frame_path(options.record, summary.frames)); !written)
+    if (auto written = write_frame(options, stage, picture, interface, summary.frames); !written)
       return tl::unexpected(written.error());
   }
-  return summarise(options, stage, picture, state, summary);
+  return summarise(options, stage, picture, interface, summary);
 }
 
 }  // namespace lackwerk::kiosk

@@ -11,6 +11,6 @@
 namespace lackwerk::kiosk {
 
 /// Runs options.frames frames, thirty a virtual second. Errors: script, folder or picture file, weights refused.
-[[nodiscard]] Result<RunSummary> record(const Options& options, Stage& stage);
+[[nodiscard]] Result<RunSummary> record(const Options& options, Stage& stage, bool vouched);
 
 }  // namespace lackwerk::kiosk

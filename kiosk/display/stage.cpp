@@ -32,6 +32,14 @@ Result<void> Stage::resize(int width, int height) {
   return {};
 }
 
+Result<void> Stage::set_pack(packs::PaintPack pack) {
+  // The renderer keeps where the paint is, not what it is.
+  std::swap(pack_, pack);
+  auto taken = renderer_->set_paint(pack_.paint());
+  if (!taken) std::swap(pack_, pack);
+  return taken;
+}
+
 Result<std::unique_ptr<Stage>> Stage::create(gles::Backend backend, int width, int height, packs::PaintPack pack,
                                              packs::Scene scene, const gles::ContextSettings& settings) {
   auto context = gles::create_context(backend, settings);

@@ -31,6 +31,9 @@ class Stage {
   /// Another picture size; the old picture is lost. Error: framebuffer refused by the driver; the old one stays.
   [[nodiscard]] Result<void> resize(int width, int height);
 
+  /// Another pack in place of this one. Error: its paint is refused by the driver; the old pack stays.
+  [[nodiscard]] Result<void> set_pack(packs::PaintPack pack);
+
   [[nodiscard]] const packs::PaintPack& pack() const { return pack_; }
   [[nodiscard]] const packs::Scene& scene() const { return scene_; }
   [[nodiscard]] gles::Context& context() { return *context_; }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include "core/check.hpp"
 #include "core/realise.hpp"
@@ -11,29 +9,24 @@
 namespace lackwerk::kiosk {
 namespace {
 
-constexpr float lowest_elevation_deg = -10.0f;
-constexpr float highest_elevation_deg = 85.0f;
-/// The eye stays this far above the floor, so that the floor never covers the picture.
-constexpr float lowest_eye_mm = 60.0f;
-constexpr float nearest_share = 0.1f;
-constexpr float farthest_share = 3.0f;
+bool is_number(const std::vector<double>& values) { return values.size() == 1 && std::isfinite(values[0]); }
 
 }  // namespace
 
 core::Weights first_paint(int paint_count) {
+  check_at_most(1, paint_count, "paints of a pack");
   std::vector<double> w(static_cast<std::size_t>(paint_count), 0.0);
   w.front() = 1.0;
   return core::Weights::uniform(w);
 }
 
-State::State(int paint_count, std::vector<packs::Camera> cameras)
+State::State(int paint_count, std::vector<packs::Camera> cameras, Room room)
     : paint_count_(static_cast<std::size_t>(paint_count)),
-      cameras_(std::move(cameras)),
+      rig_(std::move(cameras), room),
       weights_(first_paint(paint_count)),
-      camera_((check_at_most(std::size_t{1}, cameras_.size(), "a scene has a camera"), cameras_.front())),
-      home_distance_mm_(glm::length(camera_.eye_mm - camera_.target_mm)) {}
+      camera_(rig_.first()) {}
 
-bool State::set_weights(std::vector<double>& group, const std::vector<double>& values) const {
+bool State::set_group(std::vector<double>& group, const std::vector<double>& values) const {
   if (values.size() != paint_count_ || values == group) return false;
   double sum = 0.0;
   for (const double value : values) sum += value;
@@ -43,65 +36,100 @@ bool State::set_weights(std::vector<double>& group, const std::vector<double>& v
   return true;
 }
 
-void State::orbit(double azimuth_deg, double elevation_deg) {
-  const glm::vec3 from_target = camera_.eye_mm - camera_.target_mm;
-  const float distance = glm::length(from_target);
-  const float azimuth = std::atan2(from_target.y, from_target.x) + glm::radians(static_cast<float>(azimuth_deg));
-  const float elevation =
-      std::clamp(glm::degrees(std::asin(from_target.z / distance)) + static_cast<float>(elevation_deg),
-                 lowest_elevation_deg, highest_elevation_deg);
-  const float e = glm::radians(elevation);
-  camera_.eye_mm = camera_.target_mm +
-                   distance * glm::vec3(std::cos(e) * std::cos(azimuth), std::cos(e) * std::sin(azimuth), std::sin(e));
-  camera_.eye_mm.z = std::max(camera_.eye_mm.z, lowest_eye_mm);
+State::Changes State::set_weights(const core::Weights& weights) {
+  Changes changes;
+  changes.weights |= set_group(weights_.base, weights.base);
+  changes.weights |= set_group(weights_.flake_lightness, weights.flake_lightness);
+  changes.weights |= set_group(weights_.flake_colour, weights.flake_colour);
+  if (weights.flake_white >= 0.0 && weights.flake_white <= 1.0 && weights.flake_white != weights_.flake_white) {
+    weights_.flake_white = weights.flake_white;
+    changes.weights = true;
+  }
+  return changes;
 }
 
-void State::zoom(double factor) {
-  const glm::vec3 from_target = camera_.eye_mm - camera_.target_mm;
-  const float distance = glm::length(from_target);
-  const float wanted = std::clamp(distance * static_cast<float>(factor), home_distance_mm_ * nearest_share,
-                                  home_distance_mm_ * farthest_share);
-  camera_.eye_mm = camera_.target_mm + from_target * (wanted / distance);
-  camera_.eye_mm.z = std::max(camera_.eye_mm.z, lowest_eye_mm);
+bool State::set_view(const packs::Camera& camera) {
+  const bool differs = camera.eye_mm != camera_.eye_mm || camera.target_mm != camera_.target_mm ||
+                       camera.vertical_fov_deg != camera_.vertical_fov_deg;
+  camera_ = camera;
+  return differs;
+}
+
+bool State::show_place() {
+  packs::Camera camera = rig_.camera_at(rig_.place());
+  camera.name = camera_.name;
+  return set_view(camera);
+}
+
+State::Changes State::set_place(const RigPlace& place) {
+  if (place == rig_.place()) return {};
+  rig_.set_place(place);
+  Changes changes;
+  changes.view = show_place();
+  return changes;
+}
+
+bool State::choose(const std::string& name) {
+  // The camera itself, to the last bit: pictures are compared.
+  const packs::Camera* camera = rig_.choose(name);
+  return camera != nullptr && set_view(*camera);
+}
+
+State::Changes State::go_home() {
+  Changes changes;
+  changes.view = choose(std::string(rig_.first().name));
+  return changes;
+}
+
+bool State::set_light(const std::vector<double>& values) {
+  if (!is_number(values) || values[0] < 0.0 || values[0] >= light_moods) return false;
+  const int light = static_cast<int>(values[0]);
+  const bool differs = light != light_;
+  light_ = light;
+  return differs;
 }
 
 State::Changes State::apply(const input::Control& event) {
   using input::ControlKind;
   Changes changes;
-  const glm::vec3 eye_before = camera_.eye_mm;
   switch (event.kind) {
-    case ControlKind::weights: {
-      const bool base = set_weights(weights_.base, event.values);
-      const bool lightness = set_weights(weights_.flake_lightness, event.values);
-      const bool colour = set_weights(weights_.flake_colour, event.values);
-      changes.weights = base || lightness || colour;
-      break;
-    }
+    case ControlKind::weights:
+      return set_weights({event.values, event.values, event.values, 0.0});
     case ControlKind::base:
-      changes.weights = set_weights(weights_.base, event.values);
+      changes.weights = set_group(weights_.base, event.values);
       break;
     case ControlKind::flake_lightness:
-      changes.weights = set_weights(weights_.flake_lightness, event.values);
+      changes.weights = set_group(weights_.flake_lightness, event.values);
       break;
     case ControlKind::flake_colour:
-      changes.weights = set_weights(weights_.flake_colour, event.values);
+      changes.weights = set_group(weights_.flake_colour, event.values);
       break;
-    case ControlKind::camera: {
-      const auto found =
-          std::find_if(cameras_.begin(), cameras_.end(), [&](const packs::Camera& c) { return c.name == event.name; });
-      if (found == cameras_.end()) break;
-      changes.view = found->eye_mm != camera_.eye_mm || found->target_mm != camera_.target_mm ||
-                     found->vertical_fov_deg != camera_.vertical_fov_deg;
-      camera_ = *found;
-      home_distance_mm_ = glm::length(camera_.eye_mm - camera_.target_mm);
-      return changes;
-    }
+    case ControlKind::flake_white:
+      if (!is_number(event.values) || event.values[0] < 0.0 || event.values[0] > 1.0) break;
+      changes.weights = event.values[0] != weights_.flake_white;
+      weights_.flake_white = event.values[0];
+      break;
+    case ControlKind::camera:
+      changes.view = choose(event.name);
+      break;
     case ControlKind::orbit:
-      if (event.values.size() == 2 && std::isfinite(event.values[0]) && std::isfinite(event.values[1]))
-        orbit(event.values[0], event.values[1]);
+      if (event.values.size() != 2 || !std::isfinite(event.values[0]) || !std::isfinite(event.values[1])) break;
+      if (event.values[0] == 0.0 && event.values[1] == 0.0) break;
+      rig_.orbit(event.values[0], event.values[1]);
+      changes.view = show_place();
       break;
     case ControlKind::zoom:
-      if (event.values.size() == 1 && std::isfinite(event.values[0]) && event.values[0] > 0.0) zoom(event.values[0]);
+      if (!is_number(event.values) || !(event.values[0] > 0.0) || event.values[0] == 1.0) break;
+      rig_.zoom(event.values[0]);
+      changes.view = show_place();
+      break;
+    case ControlKind::light:
+      changes.view = set_light(event.values);
+      break;
+    case ControlKind::dimmer:
+      if (!is_number(event.values) || event.values[0] < 0.0 || event.values[0] > 1.0) break;
+      changes.view = event.values[0] != dimmer_;
+      dimmer_ = event.values[0];
       break;
     case ControlKind::turn:
     case ControlKind::press:
@@ -110,9 +138,8 @@ State::Changes State::apply(const input::Control& event) {
     case ControlKind::touch_move:
     case ControlKind::touch_up:
     case ControlKind::touch_cancel:
-      break;  // what these mean is for Gestures to say
+      break;  // what these mean is for Experience to say
   }
-  changes.view = camera_.eye_mm != eye_before;
   return changes;
 }
 

@@ -1,4 +1,4 @@
-// The kiosk's state: which mix is shown and from where. A pure state machine over control events.
+// The kiosk's state: which mix is shown, from where and in which light. A pure state machine over control events.
 //
 // Why it exists: behaviour is tested without GL, devices or a clock. It owns copies of the scene's cameras. One thread.
 #pragma once
@@ -8,40 +8,56 @@
 
 #include "core/interpolatable_paint.hpp"
 #include "input/control.hpp"
+#include "kiosk/display/camera_rig.hpp"
 #include "packs/scene.hpp"
 
 namespace lackwerk::kiosk {
 
+inline constexpr int light_moods = 3;
+
 class State {
  public:
   /// Starts on the first paint and the first camera. `paint_count` in [1, max_paints]; `cameras` not empty.
-  State(int paint_count, std::vector<packs::Camera> cameras);
+  State(int paint_count, std::vector<packs::Camera> cameras, Room room = {});
 
   /// What an event changed. All false: it was not understood here, or it asked for what already is.
   struct Changes {
     bool weights = false;
-    bool view = false;
+    bool view = false;  ///< camera, light or dimmer
     [[nodiscard]] bool any() const { return weights || view; }
   };
 
   /// Applies one event. Weights that are not finite, do not fit the number of paints or do not sum to 1 are ignored;
-  /// unknown cameras too. The camera keeps between 10 degrees below the target and 85 above it, never goes under the
-  /// floor, and keeps its distance within [0.1, 3] times that of the named camera.
+  /// unknown cameras and moods too. The camera keeps within CameraRig's limits: never under the floor, never inside the
+  /// car, never out of the room.
   Changes apply(const input::Control& event);
+  /// The same for values that are known to be good: weights as apply() takes them, a place of rig().
+  Changes set_weights(const core::Weights& weights);
+  Changes set_place(const RigPlace& place);
+  /// The first camera, at its own place.
+  Changes go_home();
 
   [[nodiscard]] const core::Weights& weights() const { return weights_; }
   [[nodiscard]] const packs::Camera& camera() const { return camera_; }
+  [[nodiscard]] const CameraRig& rig() const { return rig_; }
+  /// The mood of the light, [0, light_moods), and how far it is dimmed from day (0) to showroom night (1). The mood
+  /// steps; whoever draws it may fade.
+  [[nodiscard]] int light() const { return light_; }
+  [[nodiscard]] double dimmer() const { return dimmer_; }
 
  private:
-  bool set_weights(std::vector<double>& group, const std::vector<double>& values) const;
-  void orbit(double azimuth_deg, double elevation_deg);
-  void zoom(double factor);
+  bool set_group(std::vector<double>& group, const std::vector<double>& values) const;
+  bool choose(const std::string& name);
+  bool show_place();
+  bool set_view(const packs::Camera& camera);
+  bool set_light(const std::vector<double>& values);
 
   std::size_t paint_count_;
-  std::vector<packs::Camera> cameras_;
+  CameraRig rig_;
   core::Weights weights_;
   packs::Camera camera_;
-  float home_distance_mm_;
+  int light_ = 0;
+  double dimmer_ = 0.0;
 };
 
 /// The mix on the first paint: what every kiosk starts with.

@@ -53,10 +53,15 @@ std::string status_json(const Status& status, double now_ms) {
                  {"rotation", degrees_of(status.mode.rotation)}};
   out["packs"] = Json::array();
   for (const PackStatus& pack : status.packs)
-    out["packs"].push_back({{"file", pack.file}, {"id", pack.id}, {"serial", pack.serial}, {"paints", pack.paints}});
+    out["packs"].push_back({{"file", pack.file},
+                            {"id", pack.id},
+                            {"serial", pack.serial},
+                            {"signed", pack.is_signed},
+                            {"paints", pack.paints}});
   out["weights"] = {{"base", status.weights.base},
                     {"flake_lightness", status.weights.flake_lightness},
-                    {"flake_colour", status.weights.flake_colour}};
+                    {"flake_colour", status.weights.flake_colour},
+                    {"flake_white", status.weights.flake_white}};
   out["resting"] = status.resting;
   out["quality"] = status.quality;
   out["frames"] = {{"drawn", status.drawn},
@@ -69,6 +74,14 @@ std::string status_json(const Status& status, double now_ms) {
                     {"p95_frames", rounded(status.latency.p95_frames, 0.01)}};
   out["gamut"] = {{"outside_share", rounded(status.gamut_loss.share, 0.0001)},
                   {"worst", rounded(status.gamut_loss.worst, 0.0001)}};
+  out["screen"] = status.screen;
+  out["language"] = status.language;
+  out["controls"] = Json::array();
+  for (const ControlStatus& control : status.controls)
+    out["controls"].push_back({{"widget", control.widget},
+                               {"index", control.index},
+                               {"x", rounded(control.x, 1e-5)},
+                               {"y", rounded(control.y, 1e-5)}});
   out["devices"] = Json::array();
   for (const input::DeviceStatus& device : status.devices)
     out["devices"].push_back(

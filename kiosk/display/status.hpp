@@ -24,7 +24,15 @@ struct RefusedStatus {
 struct PackStatus {
   std::string file, id;
   std::uint64_t serial = 0;
+  bool is_signed = false;  ///< by a key of the keyring
   std::vector<std::string> paints;
+};
+
+/// Something on the screen that can be touched.
+struct ControlStatus {
+  std::string widget;  ///< name in kiosk/display/targets.hpp
+  int index = 0;
+  double x = 0.0, y = 0.0;  ///< its middle, in [0, 1] of the panel as it is built
 };
 
 struct Status {
@@ -35,14 +43,17 @@ struct Status {
   OutputMode mode;
   std::vector<PackStatus> packs;
   core::Weights weights;
-  bool resting = false;         ///< nothing changes and the picture has converged
-  std::string quality;          ///< rung of moving pictures
-  std::uint64_t drawn = 0;      ///< moving frames
-  std::uint64_t refined = 0;    ///< frames of still pictures
-  std::uint64_t presented = 0;  ///< pictures that reached the panel
-  double frame_ms = 0.0;        ///< median of the last moving frames
-  LatencySummary latency;       ///< from an input event to the flip that shows it
-  GamutLoss gamut_loss;         ///< of the last picture that came to rest
+  bool resting = false;                 ///< nothing changes and the picture has converged
+  std::string quality;                  ///< rung of moving pictures
+  std::uint64_t drawn = 0;              ///< moving frames
+  std::uint64_t refined = 0;            ///< frames of still pictures
+  std::uint64_t presented = 0;          ///< pictures that reached the panel
+  double frame_ms = 0.0;                ///< median of the last moving frames
+  LatencySummary latency;               ///< from an input event to the flip that shows it
+  GamutLoss gamut_loss;                 ///< of the last picture that came to rest
+  std::string screen;                   ///< of the interface: "attract", "show", "dealer", ...; empty: none
+  std::string language;                 ///< "en", "de", "ar"
+  std::vector<ControlStatus> controls;  ///< lowest first
   std::vector<input::DeviceStatus> devices;
   std::vector<Log::Entry> problems;
   double started_ms = 0.0;  ///< CLOCK_MONOTONIC

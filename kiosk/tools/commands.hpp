@@ -15,6 +15,8 @@ void add_capture_command(CLI::App& app, int& exit_code);      ///< capture: reci
 void add_pack_build_command(CLI::App& app, int& exit_code);   ///< pack build: captures -> paint pack
 void add_pack_info_command(CLI::App& app, int& exit_code);    ///< pack info: what is in a paint pack
 void add_pack_verify_command(CLI::App& app, int& exit_code);  ///< pack verify: is a pack whole and sane
+void add_pack_sign_command(CLI::App& app, int& exit_code);    ///< pack sign: a minisign signature
+void add_store_command(CLI::App& app, int& exit_code);        ///< store: add, list, remove, rollback
 void add_scene_command(CLI::App& app, int& exit_code);        ///< scene build: a scene pack
 void add_render_command(CLI::App& app, int& exit_code);       ///< render: a picture of a mix
 void add_look_command(CLI::App& app, int& exit_code);         ///< look: the contact sheet of docs/look

@@ -28,6 +28,8 @@ int run(int argc, char** argv) {
   add_pack_build_command(app, exit_code);
   add_pack_info_command(app, exit_code);
   add_pack_verify_command(app, exit_code);
+  add_pack_sign_command(app, exit_code);
+  add_store_command(app, exit_code);
   add_scene_command(app, exit_code);
   add_render_command(app, exit_code);
   add_look_command(app, exit_code);

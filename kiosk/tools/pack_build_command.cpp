@@ -24,6 +24,8 @@ void print_json(const packs::BuiltPack& built, const packs::PackContents& conten
                              {"serial", built.info.serial},
                              {"seconds", seconds},
                              {"transport_cost_lab", built.info.transport_cost},
+                             {"beyond_limit", built.info.beyond_limit},
+                             {"beyond_stop", built.beyond_stop},
                              {"captured_slices", built.captured_slices},
                              {"slices", built.data.frame.layout.slice_count()},
                              {"paints", nlohmann::json::array()}};
@@ -56,6 +58,8 @@ int run_build(const BuildOptions& options) {
   if (kept < built->captured_slices)
     print("left out: " + std::to_string(built->captured_slices - kept) + " of " +
           std::to_string(built->captured_slices) + " slices: no light reaches their angles below the coat");
+  print("beyond: mixes may go " + fixed(built->info.beyond_limit, 2) + " beyond a paint" +
+        (built->beyond_stop.empty() ? "" : "; with more, " + one_line(built->beyond_stop)));
   std::error_code code;
   const auto bytes = std::filesystem::file_size(options.out, code);
   print(options.out + ": " + fixed(code ? 0.0 : static_cast<double>(bytes) / 1e6, 2) + " MB in " + fixed(seconds, 1) +

@@ -76,6 +76,7 @@ void print_json(const packs::PaintPack& pack) {
                              {"texel_mm", paint.texel_mm},
                              {"tuples", paint.mass.size()},
                              {"transport_cost_lab", info.transport_cost},
+                             {"beyond_limit", info.beyond_limit},
                              {"paints", nlohmann::json::array()}};
   for (std::size_t k = 0; k < paint.paints.size(); ++k) out["paints"].push_back(paint_json(pack, k));
   print(out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -89,6 +90,7 @@ void print_text(const packs::PaintPack& pack) {
   print(std::to_string(paint.layout.slice_count()) + " slices, " + std::to_string(paint.level_count) + " levels from " +
         std::to_string(paint.level0_texels) + " texels of " + fixed(static_cast<double>(paint.texel_mm), 3) +
         " mm; transport moves " + fixed(info.transport_cost, 2) + " Lab");
+  print("mixes may go beyond a paint by up to " + fixed(info.beyond_limit, 2));
   for (std::size_t k = 0; k < paint.paints.size(); ++k) {
     const core::PaintIdentity& identity = paint.paints[k].identity;
     print("  " + identity.name + ": " + fixed(static_cast<double>(packs::paint_bytes(paint, k)) / 1e6, 2) +

@@ -14,6 +14,7 @@
 #include "kiosk/tools/output.hpp"
 #include "kiosk/tools/reference_render.hpp"
 #include "kiosk/tools/render_options.hpp"
+#include "packs/mix_code.hpp"
 #include "render_gles/accumulator.hpp"
 #include "render_gles/governor.hpp"
 
@@ -22,7 +23,8 @@ namespace {
 
 struct RenderOptions {
   std::string pack, scene = "builtin", camera, size = "1280x720", backend = "egl", quality = "still", flakes, out;
-  std::optional<std::string> weights, lightness, colour;  ///< given but empty is a mistake, not a default
+  std::optional<std::string> weights, lightness, colour, mix;  ///< given but empty is a mistake, not a default
+  double white = 0.0;
   int samples = 16;
   gles::CoreEs2 core_es2 = gles::CoreEs2::off;
   bool explain = false, json = false;
@@ -32,8 +34,11 @@ struct RenderOptions {
   float orange_peel_mrad = 0.0f;
 };
 
-/// The three groups from the command line; groups not given follow --weights, which defaults to the first paint.
-Result<core::Weights> read_weights(const RenderOptions& options, const core::InterpolatablePaint& paint) {
+/// --mix, or the three groups from the command line; groups not given follow --weights, which defaults to the first
+/// paint.
+Result<core::Weights> read_weights(const RenderOptions& options, const packs::PaintPack& pack) {
+  const core::InterpolatablePaint& paint = pack.paint();
+  if (options.mix) return packs::mix_for(pack.info(), paint.paints.size(), *options.mix);
   core::Weights weights = kiosk::first_paint(static_cast<int>(paint.paints.size()));
   if (options.weights) {
     auto all = parse_weights(*options.weights, paint.paints.size(), "--weights");
@@ -50,11 +55,20 @@ Result<core::Weights> read_weights(const RenderOptions& options, const core::Int
     if (!group) return tl::unexpected(group.error());
     weights.flake_colour = std::move(*group);
   }
+  weights.flake_white = options.white;
   if (auto checked = core::check_weights(paint, weights); !checked) {
     checked.error().kind = ErrorKind::usage;
     return tl::unexpected(checked.error());
   }
   return weights;
+}
+
+/// Empty for weights that no code can hold.
+std::string mix_code(const packs::PackInfo& pack, const core::Weights& weights) {
+  for (const auto* group : {&weights.base, &weights.flake_lightness, &weights.flake_colour})
+    for (const double weight : *group)
+      if (weight < packs::least_mix_weight || weight > packs::most_mix_weight) return {};
+  return packs::encode_mix(pack, weights);
 }
 
 gles::Lighting read_lighting(const RenderOptions& options, const packs::Camera& camera) {
@@ -79,8 +93,9 @@ int run_render(const RenderOptions& options) {
   if (!size) return report(size.error());
   auto pack = packs::PaintPack::open(options.pack);
   if (!pack) return report(pack.error());
-  const auto weights = read_weights(options, pack->paint());
+  const auto weights = read_weights(options, *pack);
   if (!weights) return report(weights.error());
+  const std::string code = mix_code(pack->info(), *weights);
   auto scene = load_scene(options.scene);
   if (!scene) return report(scene.error());
   const auto camera = find_camera(*scene, options.camera);
@@ -114,6 +129,7 @@ int run_render(const RenderOptions& options) {
                                {"width", size->width},
                                {"height", size->height},
                                {"samples", samples},
+                               {"mix", code},
                                {"render_ms", ms}};
     if (options.explain) {
       out["explain"] = renderer.explain();
@@ -147,6 +163,10 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--weights", options->weights, "one number per paint, sum 1: 0.2,0.3,0.5 (default: the first)");
   command->add_option("--lightness", options->lightness, "weights of the flakes' lightness alone");
   command->add_option("--colour", options->colour, "weights of the flakes' colour alone");
+  command->add_option("--white", options->white, "how far the flakes' colour is taken out, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0));
+  CLI::Option* mix = command->add_option("--mix", options->mix, "instead of weights: the code of a mix, \"LW1...\"");
+  for (const char* other : {"--weights", "--lightness", "--colour", "--white"}) mix->excludes(other);
   command->add_option("--camera", options->camera, "a camera of the scene (default: its first)");
   command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   command->add_option("--backend", options->backend, "egl, osmesa or reference")->capture_default_str();

@@ -16,6 +16,7 @@
 
 #include "core/analysis/distribution_error.hpp"
 #include "core/analysis/mip_chain.hpp"
+#include "core/beyond.hpp"
 #include "core/colour.hpp"
 #include "packs/tools/flake_life.hpp"
 
@@ -124,13 +125,16 @@ class Builder {
       report(clustering_share + (1.0 - clustering_share) * fraction, "transport");
     });
     if (!data) return tl::unexpected(data.error());
-    BuiltPack out{{}, captured_slices, std::move(*data)};
+    BuiltPack out{{}, captured_slices, {}, std::move(*data)};
     out.info.id = settings_.id;
     out.info.serial = settings_.serial;
     out.info.errors = std::move(errors_);
     for (PaintError& error : out.info.errors)
       error.flake_w1_slice.resize(static_cast<std::size_t>(out.data.frame.layout.slice_count()), 0.0f);
     out.info.transport_cost = mean_distance(out.data);
+    core::Beyond beyond = core::measure_beyond(out.data.view());
+    out.info.beyond_limit = beyond.limit;
+    out.beyond_stop = std::move(beyond.stop);
     return out;
   }
 

@@ -34,6 +34,7 @@ using PackProgress = std::function<void(double fraction, std::string_view stage)
 struct BuiltPack {
   PackInfo info;
   int captured_slices = 0;  ///< of each capture; the pack has data.frame.layout's
+  std::string beyond_stop;  ///< why the limit of extrapolation lies where it does: core::Beyond::stop
   core::InterpolatableData data;
   [[nodiscard]] PackContents contents() const { return {info, data.view()}; }
 };

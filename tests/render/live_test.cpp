@@ -9,9 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "packs/paint_pack.hpp"
+#include "tests/render/kiosk_stage.hpp"
 #include "tests/render/support.hpp"
-#include "tests/render/synthetic_paint.hpp"
 
 namespace lackwerk::test {
 namespace {
@@ -48,7 +47,7 @@ class Panel final : public kiosk::Output {
   [[nodiscard]] double wake_at_ms() const override { return input::never_ms; }
   [[nodiscard]] std::uint64_t flipped_at_us() const override { return flipped_us_; }
   [[nodiscard]] std::uint64_t presented() const override { return taken; }
-  void set_power(bool /*on*/) override {}
+  void set_power(bool on) override { powered = on; }
   void set_profile(const kiosk::DisplayProfile& /*profile*/) override {}
 
   void flip(std::uint64_t at_us) {
@@ -66,6 +65,7 @@ class Panel final : public kiosk::Output {
 
   std::uint64_t taken = 0;
   std::array<int, 2> size_px{};
+  bool powered = true;
 
  private:
   void set(OutputState state) {
@@ -110,35 +110,39 @@ class LiveTest : public testing::Test {
     if (!context_) GTEST_SKIP() << reason_;
     folder_ = std::filesystem::temp_directory_path() / ("lackwerk_live_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
-    const SyntheticPaint paint({.table = false, .lobes = 2});
-    packs::PackContents contents;
-    contents.info.id = "live-test";
-    contents.info.serial = 7;
-    contents.info.errors.resize(paint.get().paints.size());
-    for (packs::PaintError& error : contents.info.errors)
-      error.flake_w1_slice.resize(static_cast<std::size_t>(paint.get().layout.slice_count()));
-    contents.paint = paint.get();
-    const auto written = packs::write_paint_pack(folder_ / "p.lwp", contents);
-    ASSERT_TRUE(written) << written.error().line();
-    auto pack = packs::PaintPack::open(folder_ / "p.lwp", packs::Backing::copy);
-    ASSERT_TRUE(pack) << pack.error().line();
-    packs::Scene scene;
-    scene.name = "sphere";
-    scene.parts = {sphere(100.0f, 24)};
-    scene.cameras = {{"hero", {0.0f, -400.0f, 150.0f}, {0.0f, 0.0f, 0.0f}, 40.0f}};
-    auto stage = kiosk::Stage::create(*context_, 96, 54, std::move(*pack), std::move(scene));
-    ASSERT_TRUE(stage) << stage.error().line();
-    stage_ = std::move(*stage);
+    stage_ = synthetic_stage(*context_, 96, 54);
+    ASSERT_TRUE(stage_);
     panel_ = std::make_unique<Panel>(*context_);
-    state_.emplace(static_cast<int>(stage_->pack().paint().paints.size()), stage_->scene().cameras);
+    // Nothing moves by itself, and nothing lies on the picture.
+    kiosk::InterfaceSettings settings;
+    settings.shown = false;
+    settings.experience.tour = false;
+    settings.experience.idle_s = 3600.0;
+    settings.experience.reduced_motion = true;
+    start(settings);
+  }
+
+  /// A kiosk that behaves like this, from its start.
+  void start(const kiosk::InterfaceSettings& settings, std::optional<input::ScriptPlayer> script = std::nullopt) {
+    live_.reset();
+    auto interface = kiosk::Interface::create(*stage_, settings, log_);
+    ASSERT_TRUE(interface) << interface.error().line();
+    interface_ = std::move(*interface);
     picture_.emplace(*stage_, kiosk::PictureSettings{"best", 62, still_frames});
+    const auto prepared = picture_->prepare(interface_->shown());
+    ASSERT_TRUE(prepared) << prepared.error().line();
     kiosk::Devices devices;
     devices.sources.push_back(std::make_unique<HandSource>(hand_));
-    live_ = std::make_unique<kiosk::Live>(*panel_, *stage_, *picture_, *state_, std::move(devices), std::nullopt, log_,
-                                          service_, kiosk::LiveSettings{folder_.string(), "p.lwp", {}});
+    kiosk::LiveSettings live;
+    live.status_folder = folder_.string();
+    live.pack_file = "p.lwp";
+    live.minute_of_day = [this] { return minute_; };
+    live_ = std::make_unique<kiosk::Live>(*panel_, *stage_, *picture_, *interface_, std::move(devices),
+                                          std::move(script), log_, service_, std::move(live));
   }
   void TearDown() override {
     live_.reset();
+    interface_.reset();
     picture_.reset();
     stage_.reset();
     panel_.reset();
@@ -168,13 +172,14 @@ class LiveTest : public testing::Test {
   std::unique_ptr<gles::Context> context_;
   std::unique_ptr<kiosk::Stage> stage_;
   std::unique_ptr<Panel> panel_;
-  std::optional<kiosk::State> state_;
+  std::unique_ptr<kiosk::Interface> interface_;
   std::optional<kiosk::Picture> picture_;
   kiosk::Log log_{nullptr};
   kiosk::Service service_;
   Hand hand_;
   std::unique_ptr<kiosk::Live> live_;
   double now_ms_ = 1e6;
+  int minute_ = 720;
 };
 
 TEST_F(LiveTest, NothingChangesNothingIsDrawnAndNobodyIsWoken) {
@@ -193,11 +198,11 @@ TEST_F(LiveTest, NothingChangesNothingIsDrawnAndNobodyIsWoken) {
 
 TEST_F(LiveTest, ATurnShowsWithTheNextFlip) {
   settle();
-  const auto before = state_->weights().base;
+  const auto before = interface_->shown().weights().base;
   turn(6.0);
   step();
   step();
-  EXPECT_NE(state_->weights().base, before);
+  EXPECT_NE(interface_->shown().weights().base, before);
   EXPECT_EQ(picture_->drawn(), 2u);
   EXPECT_EQ(live_->status().latency.count, 1u);
   EXPECT_LE(live_->status().latency.p95_ms, 20.0 + 1e-9);
@@ -222,10 +227,11 @@ TEST_F(LiveTest, WithoutAPanelInputCountsAndNothingIsDrawn) {
   turn(6.0);
   for (int k = 0; k < 30; ++k) step();
   EXPECT_EQ(picture_->drawn(), drawn);
-  EXPECT_NE(state_->weights().base.front(), 1.0);
+  EXPECT_NE(interface_->shown().weights().base.front(), 1.0);
   EXPECT_EQ(status()["state"], "waiting_for_display");
-  EXPECT_EQ(status()["weights"]["base"], nlohmann::json(state_->weights().base)) << "what is turned is told";
-  EXPECT_EQ(live_->wake_at_ms(now_ms_), input::never_ms);
+  EXPECT_EQ(status()["weights"]["base"], nlohmann::json(interface_->shown().weights().base))
+      << "what is turned is told";
+  EXPECT_GT(live_->wake_at_ms(now_ms_), now_ms_ + 3.5e6) << "all it waits for is that the visitor does not come back";
   panel_->plug({54, 128}, kiosk::Rotation::quarter);
   step();
   EXPECT_EQ(panel_->size_px, (std::array<int, 2>{128, 54})) << "another panel, mounted sideways";
@@ -265,6 +271,93 @@ TEST_F(LiveTest, StatusFollowsAtMostTwiceASecond) {
   EXPECT_NE(status()["weights"], first["weights"]);
   live_->stop();
   EXPECT_EQ(status()["state"], "stopped");
+}
+
+TEST_F(LiveTest, AVisitorWhoHasGoneIsCountedDownAndForgotten) {
+  kiosk::InterfaceSettings settings;
+  settings.shown = false;
+  settings.experience.tour = false;
+  settings.experience.idle_s = 30.0;
+  settings.experience.countdown_s = 5.0;
+  start(settings);
+  settle();
+  turn(6.0);
+  step();
+  EXPECT_NE(interface_->shown().weights().base.front(), 1.0);
+  for (int k = 0; k < 50; ++k) step();  // nothing glides or blends any more
+  EXPECT_NEAR(live_->wake_at_ms(now_ms_), now_ms_ + 29e3, 1e3);
+  now_ms_ += 31e3;
+  step();
+  EXPECT_TRUE(interface_->model().countdown_s);
+  now_ms_ += 6e3;
+  step();
+  EXPECT_EQ(interface_->model().screen, kiosk::ui::Screen::attract);
+  EXPECT_EQ(interface_->shown().weights().base.front(), 1.0);
+  for (int k = 0; k < 50; ++k) step();
+  EXPECT_EQ(live_->wake_at_ms(now_ms_), input::never_ms);
+}
+
+TEST_F(LiveTest, AtNightThePanelIsOffUntilSomebodyComes) {
+  kiosk::InterfaceSettings settings;
+  settings.shown = false;
+  settings.experience.tour = false;
+  settings.experience.night = {22 * 60, 6 * 60};
+  start(settings);
+  settle();
+  EXPECT_TRUE(panel_->powered);
+  minute_ = 23 * 60;
+  now_ms_ += 120e3;
+  step();
+  EXPECT_FALSE(panel_->powered);
+  const std::uint64_t taken = panel_->taken;
+  for (int k = 0; k < 20; ++k) step();
+  EXPECT_EQ(panel_->taken, taken) << "nobody sees it";
+  EXPECT_GT(live_->wake_at_ms(now_ms_), now_ms_ + 30e3);
+  turn(6.0);
+  step();
+  step();
+  EXPECT_TRUE(panel_->powered);
+  EXPECT_GT(panel_->taken, taken);
+}
+
+TEST_F(LiveTest, ATourDrawsEveryFrameAndDoesNotSpinWithoutAPanel) {
+  kiosk::InterfaceSettings settings;
+  settings.shown = false;
+  start(settings);
+  for (int k = 0; k < 10; ++k) step();
+  EXPECT_GE(picture_->drawn(), 8u);
+  EXPECT_LE(live_->wake_at_ms(now_ms_), now_ms_ + 20.0);
+  panel_->unplug();
+  step();
+  for (int k = 0; k < 30; ++k) step();
+  EXPECT_GT(live_->wake_at_ms(now_ms_), now_ms_ + 100.0);
+}
+
+TEST_F(LiveTest, TheInterfaceIsOnThePanelAndCostsNothingWhileItRests) {
+  kiosk::InterfaceSettings settings;
+  settings.experience.tour = false;
+  settings.experience.reduced_motion = true;
+  settings.dpi = 10.0;  // the picture is small, not the panel
+  start(settings);
+  settle();
+  // Longer than the pause before swatches are drawn.
+  for (int k = 0; k < 60; ++k) step();
+  EXPECT_FALSE(interface_->wants_swatch());
+  const std::uint64_t sent = interface_->overlay()->sent_bytes(), taken = panel_->taken;
+  EXPECT_GT(sent, 0u);
+  for (int k = 0; k < 20; ++k) step();
+  EXPECT_EQ(panel_->taken, taken);
+  EXPECT_EQ(interface_->overlay()->sent_bytes(), sent);
+  EXPECT_EQ(live_->wake_at_ms(now_ms_), input::never_ms);
+  EXPECT_EQ(status()["screen"], "attract");
+  turn(2.0);
+  step();
+  for (int k = 0; k < 30; ++k) step();
+  EXPECT_EQ(status()["screen"], "show");
+  bool swatch = false;
+  const auto now = status();
+  for (const auto& control : now["controls"]) swatch |= control["widget"] == "swatch" && control["index"] == 1;
+  EXPECT_TRUE(swatch) << now["controls"];
 }
 
 TEST_F(LiveTest, ALostDeviceEndsTheLoopWithItsName) {

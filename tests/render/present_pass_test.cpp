@@ -8,9 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <random>
 
-#include "core/check.hpp"
 #include "core/colour.hpp"
 #include "kiosk/display/output/panel_target.hpp"
 #include "kiosk/display/test_pattern.hpp"
@@ -20,7 +18,6 @@
 namespace lackwerk::test {
 namespace {
 
-using gles::Backend;
 using gles::Framebuffer;
 using gles::Image;
 using kiosk::ChannelOrder;
@@ -30,48 +27,9 @@ using kiosk::Rotation;
 
 constexpr std::array rotations = {Rotation::none, Rotation::quarter, Rotation::half, Rotation::three_quarters};
 
-struct Where {
-  Backend backend;
-  gles::CoreEs2 core;
-};
-
-class Present : public testing::TestWithParam<Where> {
+class Present : public OnDriver {
  protected:
-  void SetUp() override {
-    std::string reason;
-    context_ = open_context(GetParam().backend, reason);
-    if (context_ && GetParam().core != gles::CoreEs2::off) {
-      context_.reset();
-      auto limited = gles::create_context(GetParam().backend, {.core_es2 = GetParam().core});
-      ASSERT_TRUE(limited) << limited.error().line();
-      context_ = std::move(*limited);
-    }
-    if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
-    if (!context_) GTEST_SKIP() << reason;
-  }
-
-  [[nodiscard]] bool mediump() const { return !context_->info().fragment_highp; }
-
-  [[nodiscard]] Framebuffer target(int width, int height) const {
-    auto made = Framebuffer::create(*context_, width, height, gles::PixelFormat::rgba8, false);
-    if (!made) std::abort();
-    return std::move(*made);
-  }
-
-  /// A framebuffer that holds the image.
-  [[nodiscard]] Framebuffer picture(const Image& image) const {
-    Framebuffer made = target(image.width, image.height);
-    std::vector<std::uint8_t> rgba(image.rgb.size() / 3 * 4, 17);  // alpha must not matter
-    std::uint8_t* out = rgba.data();
-    for (int y = image.height - 1; y >= 0; --y)
-      for (int x = 0; x < image.width; ++x, out += 4) std::copy_n(image.pixel(x, y), 3, out);
-    const gles::GlApi& gl = context_->gl();
-    gl.ActiveTexture(GL_TEXTURE0);
-    gl.BindTexture(GL_TEXTURE_2D, made.texture());
-    gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-    return made;
-  }
+  [[nodiscard]] Framebuffer picture(const Image& image) const { return framebuffer_of(*context_, image); }
 
   /// The panel as somebody sees it: drawn for reading, rows from above.
   [[nodiscard]] Image shown(PresentPass& pass, const Framebuffer& from, std::array<int, 2> panel_px,
@@ -88,16 +46,7 @@ class Present : public testing::TestWithParam<Where> {
     }
     return image;
   }
-
-  std::unique_ptr<gles::Context> context_;
 };
-
-Image random_image(int width, int height) {
-  Image image(width, height);
-  std::mt19937 random(4);
-  for (std::uint8_t& byte : image.rgb) byte = static_cast<std::uint8_t>(random());
-  return image;
-}
 
 /// What the panel must show of a picture, by the one transform.
 Image turned(const Image& picture, Rotation rotation, std::array<int, 2> panel_px) {
@@ -110,13 +59,6 @@ Image turned(const Image& picture, Rotation rotation, std::array<int, 2> panel_p
       to = std::copy_n(from, 3, to);
     }
   return out;
-}
-
-std::size_t different(const Image& a, const Image& b) {
-  check_equal(a.rgb.size(), b.rgb.size(), "sizes");
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < a.rgb.size(); ++k) count += a.rgb[k] != b.rgb[k] ? 1 : 0;
-  return count;
 }
 
 /// Display P3 primaries with a power curve: red and green beyond sRGB's.
@@ -150,7 +92,7 @@ TEST_P(Present, CopiesByteForByteAtEveryTurn) {
       const Framebuffer from = picture(image);
       pass.set(rotation, {});
       const Image expected = turned(image, rotation, panel);
-      EXPECT_EQ(different(shown(pass, from, panel), expected), 0u)
+      EXPECT_EQ(different_bytes(shown(pass, from, panel), expected), 0u)
           << panel[0] << "x" << panel[1] << " turned by " << kiosk::degrees_of(rotation);
     }
 }
@@ -162,13 +104,13 @@ TEST_P(Present, WindowsHaveTheirLowestRowFirst) {
     const auto size = kiosk::picture_size(rotation, panel);
     const Image image = random_image(size[0], size[1]);
     const Framebuffer from = picture(image);
-    const Framebuffer to = target(panel[0], panel[1]);
+    const Framebuffer to = framebuffer_of(*context_, Image(panel[0], panel[1]));
     to.bind();
     GLint name = 0;
     context_->gl().GetIntegerv(GL_FRAMEBUFFER_BINDING, &name);
     pass.set(rotation, {});
     pass.draw(from, panel, static_cast<GLuint>(name), false);
-    EXPECT_EQ(different(to.read(), turned(image, rotation, panel)), 0u) << kiosk::degrees_of(rotation);
+    EXPECT_EQ(different_bytes(to.read(), turned(image, rotation, panel)), 0u) << kiosk::degrees_of(rotation);
   }
 }
 
@@ -180,7 +122,7 @@ TEST_P(Present, BlueMayComeFirst) {
     const Image rgb = shown(pass, from, {33, 9});
     Image bgr = shown(pass, from, {33, 9}, ChannelOrder::bgr);
     for (std::size_t k = 0; k < bgr.rgb.size(); k += 3) std::swap(bgr.rgb[k], bgr.rgb[k + 2]);
-    EXPECT_EQ(different(rgb, bgr), 0u);
+    EXPECT_EQ(different_bytes(rgb, bgr), 0u);
   }
 }
 
@@ -188,12 +130,12 @@ TEST_P(Present, OtherSizesAreStretched) {
   PresentPass pass(*context_);
   Image image(20, 10);
   std::fill(image.rgb.begin(), image.rgb.end(), std::uint8_t{200});
-  EXPECT_EQ(different(shown(pass, picture(image), {64, 48}),
-                      [] {
-                        Image all(64, 48);
-                        std::fill(all.rgb.begin(), all.rgb.end(), std::uint8_t{200});
-                        return all;
-                      }()),
+  EXPECT_EQ(different_bytes(shown(pass, picture(image), {64, 48}),
+                            [] {
+                              Image all(64, 48);
+                              std::fill(all.rgb.begin(), all.rgb.end(), std::uint8_t{200});
+                              return all;
+                            }()),
             0u);
 }
 
@@ -302,7 +244,7 @@ TEST_P(Present, BlackAndWhiteStayClean) {
   for (const int value : {0, 255}) {
     Image image(200, 100);
     std::fill(image.rgb.begin(), image.rgb.end(), static_cast<std::uint8_t>(value));
-    EXPECT_EQ(different(shown(pass, picture(image), {200, 100}), image), 0u) << value;
+    EXPECT_EQ(different_bytes(shown(pass, picture(image), {200, 100}), image), 0u) << value;
   }
 }
 
@@ -325,7 +267,7 @@ TEST_P(Present, GamutWarningHatchesWhatIsLost) {
                                           core::srgb_decode(colour[2] / 255.0)};
     const bool lost = kiosk::gamut_loss(small, {linear}).share > 0.0;
     EXPECT_EQ(lost, colour[0] == 0);
-    const double changed = static_cast<double>(different(warned, plain)) / static_cast<double>(plain.rgb.size());
+    const double changed = static_cast<double>(different_bytes(warned, plain)) / static_cast<double>(plain.rgb.size());
     if (lost)
       EXPECT_GT(changed, 0.2);  // half of the pixels, of which black and white each change a part of the bytes
     else
@@ -335,7 +277,7 @@ TEST_P(Present, GamutWarningHatchesWhatIsLost) {
   Image green(48, 48);
   for (std::size_t k = 1; k < green.rgb.size(); k += 3) green.rgb[k] = 255;
   pass.set(Rotation::none, {}, false, true);
-  EXPECT_EQ(different(shown(pass, picture(green), {48, 48}), green), 0u);
+  EXPECT_EQ(different_bytes(shown(pass, picture(green), {48, 48}), green), 0u);
 }
 
 TEST_P(Present, TestPatternComesAtThePanelsResolution) {
@@ -346,12 +288,12 @@ TEST_P(Present, TestPatternComesAtThePanelsResolution) {
     pass.set(rotation, {}, true);
     const auto size = kiosk::picture_size(rotation, panel);
     const Image out = shown(pass, from, panel);
-    EXPECT_EQ(different(out, turned(kiosk::test_pattern(size[0], size[1]), rotation, panel)), 0u);
+    EXPECT_EQ(different_bytes(out, turned(kiosk::test_pattern(size[0], size[1]), rotation, panel)), 0u);
   }
   // Off again: the picture.
   pass.set(Rotation::none, {});
   const Image image = random_image(64, 64);
-  EXPECT_EQ(different(shown(pass, picture(image), {64, 64}), image), 0u);
+  EXPECT_EQ(different_bytes(shown(pass, picture(image), {64, 64}), image), 0u);
   // To look at: LACKWERK_PRESENT_OUT names a folder.
   if (const char* folder = std::getenv("LACKWERK_PRESENT_OUT"); folder != nullptr) {
     DisplayProfile small = wide(2.4);
@@ -364,16 +306,8 @@ TEST_P(Present, TestPatternComesAtThePanelsResolution) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Everywhere, Present,
-                         testing::Values(Where{Backend::egl_surfaceless, gles::CoreEs2::off},
-                                         Where{Backend::egl_surfaceless, gles::CoreEs2::highp},
-                                         Where{Backend::egl_surfaceless, gles::CoreEs2::mediump},
-                                         Where{Backend::osmesa, gles::CoreEs2::off}),
-                         [](const auto& info) {
-                           const std::string name = gles::backend_name(info.param.backend);
-                           if (info.param.core == gles::CoreEs2::off) return name;
-                           return name + (info.param.core == gles::CoreEs2::highp ? "_core" : "_mediump");
-                         });
+INSTANTIATE_TEST_SUITE_P(Everywhere, Present, testing::ValuesIn(all_drivers),
+                         [](const auto& info) { return driver_name(info.param); });
 
 }  // namespace
 }  // namespace lackwerk::test

@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <random>
 #include <string_view>
 
+#include "core/check.hpp"
 #include "core/colour.hpp"
 
 // LeakSanitizer's documented hook: OSMesa keeps a few kilobytes per process that no call gives back.
@@ -41,6 +43,54 @@ void OnBackend::SetUp() {
   context_ = open_context(GetParam(), reason);
   if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
   if (!context_) GTEST_SKIP() << reason;
+}
+
+std::string driver_name(const Driver& driver) {
+  const std::string name = gles::backend_name(driver.backend);
+  if (driver.core == gles::CoreEs2::off) return name;
+  return name + (driver.core == gles::CoreEs2::highp ? "_core" : "_mediump");
+}
+
+void OnDriver::SetUp() {
+  std::string reason;
+  context_ = open_context(GetParam().backend, reason);
+  if (context_ && GetParam().core != gles::CoreEs2::off) {
+    context_.reset();
+    auto limited = gles::create_context(GetParam().backend, {.core_es2 = GetParam().core});
+    ASSERT_TRUE(limited) << limited.error().line();
+    context_ = std::move(*limited);
+  }
+  if (!context_ && HasFailure()) FAIL() << reason;  // fatal: the body must not run
+  if (!context_) GTEST_SKIP() << reason;
+}
+
+gles::Framebuffer framebuffer_of(const gles::Context& context, const gles::Image& image) {
+  auto made = gles::Framebuffer::create(context, image.width, image.height, gles::PixelFormat::rgba8, false);
+  if (!made) std::abort();
+  std::vector<std::uint8_t> rgba(image.rgb.size() / 3 * 4, 17);
+  std::uint8_t* out = rgba.data();
+  for (int y = image.height - 1; y >= 0; --y)
+    for (int x = 0; x < image.width; ++x, out += 4) std::copy_n(image.pixel(x, y), 3, out);
+  const gles::GlApi& gl = context.gl();
+  gl.ActiveTexture(GL_TEXTURE0);
+  gl.BindTexture(GL_TEXTURE_2D, made->texture());
+  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  return std::move(*made);
+}
+
+gles::Image random_image(int width, int height) {
+  gles::Image image(width, height);
+  std::mt19937 random(4);
+  for (std::uint8_t& byte : image.rgb) byte = static_cast<std::uint8_t>(random());
+  return image;
+}
+
+std::size_t different_bytes(const gles::Image& a, const gles::Image& b) {
+  check_equal(a.rgb.size(), b.rgb.size(), "sizes");
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < a.rgb.size(); ++k) count += a.rgb[k] != b.rgb[k] ? 1 : 0;
+  return count;
 }
 
 Difference compare_images(const gles::Image& a, const gles::Image& b, const std::vector<std::uint8_t>& mask) {

@@ -6,12 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "packs/scene.hpp"
 #include "render_gles/context.hpp"
+#include "render_gles/framebuffer.hpp"
 #include "render_gles/image.hpp"
 
 namespace lackwerk::test {
@@ -26,6 +28,31 @@ class OnBackend : public testing::TestWithParam<gles::Backend> {
   void SetUp() override;
   std::unique_ptr<gles::Context> context_;
 };
+
+/// A backend, perhaps held to what the weakest drivers offer.
+struct Driver {
+  gles::Backend backend;
+  gles::CoreEs2 core;
+};
+[[nodiscard]] std::string driver_name(const Driver& driver);
+/// A test on such a driver: skipped with the reason where there is none. `all_drivers` is what to instantiate it with.
+class OnDriver : public testing::TestWithParam<Driver> {
+ protected:
+  void SetUp() override;
+  [[nodiscard]] bool mediump() const { return !context_->info().fragment_highp; }
+  std::unique_ptr<gles::Context> context_;
+};
+inline constexpr std::array all_drivers = {Driver{gles::Backend::egl_surfaceless, gles::CoreEs2::off},
+                                           Driver{gles::Backend::egl_surfaceless, gles::CoreEs2::highp},
+                                           Driver{gles::Backend::egl_surfaceless, gles::CoreEs2::mediump},
+                                           Driver{gles::Backend::osmesa, gles::CoreEs2::off}};
+
+/// A framebuffer without depth that holds the image; its alpha is not 255, for it must not matter.
+[[nodiscard]] gles::Framebuffer framebuffer_of(const gles::Context& context, const gles::Image& image);
+/// Noise, the same every time.
+[[nodiscard]] gles::Image random_image(int width, int height);
+/// Bytes that differ between two pictures of equal size.
+[[nodiscard]] std::size_t different_bytes(const gles::Image& a, const gles::Image& b);
 
 /// CIEDE2000 over the pixels of two pictures of equal size, as an sRGB display shows them.
 struct Difference {

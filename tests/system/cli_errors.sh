@@ -111,6 +111,7 @@ succeed pack verify p.lwp
 succeed pack info p.lwp
 succeed pack info p.lwp --json
 grep -q '"serial": 7' out.txt && grep -q '"paints"' out.txt || { echo 'FAILED: pack info --json'; failures=$((failures + 1)); }
+grep -q '"beyond_limit"' out.txt || { echo 'FAILED: no beyond_limit'; failures=$((failures + 1)); }
 expect 1 'missing.lwp' pack info missing.lwp
 expect 1 'regular file' pack info good
 # flip FILE OFFSET: another byte there.
@@ -149,7 +150,22 @@ if "$lackwerk" render --help 2>/dev/null | grep -q -e --weights; then
   done
   expect 1 'missing.lwp' render --pack missing.lwp --scene sphere -o w.png
   expect 1 'flipped.lwp' render --pack flipped.lwp --scene sphere -o w.png
+  expect 2 'white' render --pack p.lwp --scene sphere --white 1.1 -o w.png
 fi
+
+# Codes of mixes. Of two paints of pack p: 0.25 and 0.75 of serial 7, and of serial 8; the third is of pack demo.
+mix=LW1W2G2CR744W8DHMG1 newer=LW1W2G2CR844W83G6N1 other=LW1V3E2ST186Q18062TFR
+expect 2 'mix code: does not begin' render --pack p.lwp --mix '' -o w.png
+expect 2 'mix code: does not begin' render --pack p.lwp --mix nonsense -o w.png
+expect 2 'mix code: is too long' render --pack p.lwp --mix "$(head -c 300 /dev/zero | tr '\0' 0)" -o w.png
+expect 2 'mix code: is damaged' render --pack p.lwp --mix "${mix%?}Z" -o w.png
+expect 2 'mix' render --pack p.lwp --mix "$mix" --weights 0.5,0.5 -o w.png
+expect 2 'mix' render --pack p.lwp --mix "$mix" --white 0.5 -o w.png
+expect 1 'mix code: .*another pack' render --pack p.lwp --mix "$other" -o w.png
+expect 1 'mix code: .*serial 8' render --pack p.lwp --mix "$newer" -o w.png
+# This one is taken: the scene is what is missing.
+expect 1 'no/such.lws' render --pack p.lwp --mix "$mix" --scene no/such.lws -o w.png
+test ! -e w.png
 
 # Scenes.
 succeed scene build sphere -o s.lws --occlusion-rays 4

@@ -40,7 +40,8 @@ done
 render --weights 1,0,0 --backend egl -o "$work/again.png"
 cmp -s "$work/from.png" "$work/again.png" && echo "ok: the same call gives the same bytes" || { echo "FAILED: the same call gave other bytes"; failures=$((failures + 1)); }
 
-still=$("$kiosk" --pack "$demo/demo.lwp" --scene "$demo/builtin.lws" --size 320x180 --frames 20 --still-frames 8)
+printf '[interface]\ntour = false\n' >"$work/still.toml"
+still=$("$kiosk" --config "$work/still.toml" --pack "$demo/demo.lwp" --scene "$demo/builtin.lws" --size 320x180 --frames 20 --still-frames 8)
 echo "$still"
 check "frames drawn while nothing changes" "$(sed -E 's/.* ([0-9]+) drawn.*/\1/' <<<"$still")" "==" 1
 check "frames a resting picture is refined with, before nothing is done at all" "$(sed -E 's/.* ([0-9]+) refined.*/\1/' <<<"$still")" "==" 8

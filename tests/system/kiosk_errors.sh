@@ -47,5 +47,20 @@ expect 2 "core-es2" "${good[@]}" --core-es2 x
 expect 2 "quality" "${good[@]}" --quality x
 expect 2 "still-frames" "${good[@]}" --still-frames 999
 expect 2 "frame-ms" "${good[@]}" --frame-ms 0
+expect 2 "language" "${good[@]}" --language fr
+printf '[interface]\npin = "1234"\n' >"$work/pin.toml"
+expect 1 "line 2, interface.pin: .*hash-pin" "${good[@]}" --config "$work/pin.toml"
+grep -q 1234 "$work/err" && { echo "FAILED: a PIN in an error message"; failures=$((failures + 1)); }
+for pin in '' 123 1234567890123 '12 34' abcd; do
+  printf '%s\n' "$pin" >"$work/typed"
+  expect 2 "PIN: must be 4 to 12 digits" --hash-pin <"$work/typed"
+done
+# What --hash-pin prints is what the file takes: it goes on to the next mistake.
+{
+  echo '[interface]'
+  echo 4711 | "$kiosk" --hash-pin
+  echo 'dpi = 5'
+} >"$work/pin.toml"
+expect 1 "line 3, interface.dpi" "${good[@]}" --config "$work/pin.toml"
 echo "$checks runs, $failures failures"
 [ $failures -eq 0 ]

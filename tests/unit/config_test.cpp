@@ -98,6 +98,20 @@ seat = "direct"
 quality = "lean"
 frame_ms = 33
 still_frames = 0
+[interface]
+shown = false
+language = "ar"
+dpi = 163
+idle_s = 30
+countdown_s = 7.5
+night = "20:00-08:30"
+beyond = true
+reduced_motion = true
+tour = false
+brightness = 0.8
+pin = "$argon2id$v=19$m=8192,t=4,p=1$AAAAAAAAAAAAAAAAAAAAAA$AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
+drift_px = 12
+attract_brightness = 0.5
 [panel]
 white = [0.3457, 0.3585]
 red = [0.68, 0.32]
@@ -127,7 +141,7 @@ ignore = true
 )");
   ASSERT_TRUE(reading.errors.empty()) << lines(reading);
   const Config& c = reading.config;
-  EXPECT_EQ(c.packs, (std::vector<std::string>{"a.lwp", "b.lwp"}));
+  EXPECT_EQ(c.packs.files, (std::vector<std::string>{"a.lwp", "b.lwp"}));
   EXPECT_EQ(c.scene, "car.lws");
   EXPECT_EQ(c.output.platform, Platform::kms);
   EXPECT_EQ(c.output.card, "/dev/dri/by-path/pci-0000:00:02.0-card");
@@ -143,6 +157,21 @@ ignore = true
   EXPECT_EQ(c.output.profile.curves[2], (std::vector<double>{0, 0.2, 1}));
   EXPECT_EQ(c.output.profile.source, "kiosk.toml");
   EXPECT_TRUE(c.output.gamut_warning);
+  EXPECT_FALSE(c.interface.shown);
+  EXPECT_EQ(c.interface.dpi, 163.0);
+  EXPECT_EQ(c.interface.drift_px, 12);
+  EXPECT_EQ(c.interface.attract_brightness, 0.5);
+  EXPECT_TRUE(c.interface.pin.starts_with("$argon2id$"));
+  const ExperienceSettings& experience = c.interface.experience;
+  EXPECT_EQ(experience.language, ui::Language::arabic);
+  EXPECT_EQ(experience.idle_s, 30.0);
+  EXPECT_EQ(experience.countdown_s, 7.5);
+  EXPECT_EQ(experience.night, (NightHours{20 * 60, 8 * 60 + 30}));
+  EXPECT_TRUE(experience.beyond_allowed);
+  EXPECT_TRUE(experience.reduced_motion);
+  EXPECT_FALSE(experience.tour);
+  EXPECT_EQ(experience.brightness, 0.8);
+  EXPECT_TRUE(experience.has_pin);
   EXPECT_EQ(c.input_seat, "seat1");
   EXPECT_FALSE(c.knobs.usb);
   EXPECT_TRUE(c.knobs.hidraw);
@@ -163,6 +192,25 @@ TEST(Config, CurvesAreWordsExponentsOrLists) {
   EXPECT_TRUE(parse("[panel]\ncurve = \"srgb\"").config.output.profile.curves[0].empty());
   EXPECT_EQ(parse("[panel]\nicc = \"p.icc\"").config.icc, "p.icc");
   EXPECT_TRUE(parse("[panel]\nicc = \"p.icc\"").errors.empty());
+}
+
+TEST(Config, NightHoursReadBackAsTheyAreWritten) {
+  for (const char* text : {"", "20:00-08:00", "00:00-23:59", "12:01-12:02"}) {
+    const auto reading = parse("[interface]\nnight = \"" + std::string(text) + "\"");
+    EXPECT_TRUE(reading.errors.empty()) << lines(reading);
+    NightHours night = reading.config.interface.experience.night;
+    EXPECT_EQ(text_of(Slot{&night}), "\"" + std::string(text) + "\"");
+  }
+}
+
+TEST(Config, APlainPinIsRefusedAndNotRepeated) {
+  const auto reading = parse("\n[interface]\npin = \"4711\"");
+  ASSERT_EQ(reading.errors.size(), 1u);
+  EXPECT_EQ(reading.errors[0].field, "line 3, interface.pin");
+  EXPECT_EQ(reading.errors[0].line().find("4711"), std::string::npos);
+  EXPECT_NE(reading.errors[0].remedy.find("--hash-pin"), std::string::npos);
+  EXPECT_FALSE(reading.config.interface.experience.has_pin);
+  EXPECT_TRUE(reading.config.interface.pin.empty());
 }
 
 TEST(Config, AllMistakesAtOnceEachWithItsLine) {
@@ -221,6 +269,24 @@ TEST(Config, WrongValuesAreRefusedAndLeaveTheDefault) {
                            "[panel]\ncurve = \"gamma\"",
                            "[panel]\ngamut_warning = 1",
                            "[panel]\nicc = \"a\"\nwhite = [0.3127, 0.329]",
+                           "[interface]\nlanguage = \"fr\"",
+                           "[interface]\nlanguage = 1",
+                           "[interface]\ndpi = 29.9",
+                           "[interface]\ndpi = -1",
+                           "[interface]\nidle_s = 4",
+                           "[interface]\ncountdown_s = 61",
+                           "[interface]\nnight = \"20:00\"",
+                           "[interface]\nnight = \"20:00-24:00\"",
+                           "[interface]\nnight = \"20:60-08:00\"",
+                           "[interface]\nnight = \"08:00-08:00\"",
+                           "[interface]\nnight = \"8:00-9:00\"",
+                           "[interface]\nnight = 20:00:00",
+                           "[interface]\nbrightness = 0.1",
+                           "[interface]\npin = \"1234\"",
+                           "[interface]\npin = 1234",
+                           "[interface]\ndrift_px = 25",
+                           "[interface]\nattract_brightness = 1.1",
+                           "[interface]\nreduced_motion = 1",
                            "[input]\nudev_seat = \"\"",
                            "[knobs]\nacceleration = inf",
                            "[knobs]\nacceleration = -1e-5",

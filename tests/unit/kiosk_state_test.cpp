@@ -43,13 +43,52 @@ TEST(KioskState, GroupsMoveApart) {
   EXPECT_EQ(state.weights().flake_colour, (std::vector<double>{1, 0, 0}));
 }
 
+TEST(KioskState, LightAndDimmerAreTheView) {
+  State state = make_state();
+  EXPECT_EQ(state.light(), 0);
+  EXPECT_EQ(state.dimmer(), 0.0);
+  EXPECT_TRUE(state.apply({ControlKind::light, {2}, {}}).view);
+  EXPECT_FALSE(state.apply({ControlKind::light, {2}, {}}).any());
+  EXPECT_TRUE(state.apply({ControlKind::dimmer, {0.25}, {}}).view);
+  EXPECT_FALSE(state.apply({ControlKind::dimmer, {0.25}, {}}).any());
+  EXPECT_EQ(state.light(), 2);
+  EXPECT_EQ(state.dimmer(), 0.25);
+}
+
+TEST(KioskState, WhiteFlakesAreAWeightOfTheirOwn) {
+  State state = make_state();
+  EXPECT_TRUE(state.apply({ControlKind::flake_white, {0.5}, {}}).weights);
+  EXPECT_EQ(state.weights().flake_white, 0.5);
+  EXPECT_EQ(state.weights().base, (std::vector<double>{1, 0, 0}));
+  EXPECT_FALSE(state.apply({ControlKind::flake_white, {0.5}, {}}).any());
+  // Weights for all groups are the mix as measured.
+  EXPECT_TRUE(state.apply({ControlKind::weights, {1, 0, 0}, {}}).weights);
+  EXPECT_EQ(state.weights().flake_white, 0.0);
+}
+
+TEST(KioskState, HomeIsTheFirstCameraToTheLastBit) {
+  State state = make_state();
+  state.apply({ControlKind::orbit, {33, 7}, {}});
+  state.apply({ControlKind::zoom, {0.3}, {}});
+  EXPECT_TRUE(state.go_home().view);
+  EXPECT_EQ(state.camera().eye_mm, make_state().camera().eye_mm);
+  EXPECT_EQ(state.camera().target_mm, make_state().camera().target_mm);
+  EXPECT_FALSE(state.go_home().any());
+  EXPECT_TRUE(state.apply({ControlKind::camera, {}, "macro"}).view);
+  EXPECT_EQ(state.camera().eye_mm, glm::vec3(900.0f, 900.0f, 1100.0f));
+}
+
 TEST(KioskState, NonsenseIsIgnored) {
   State state = make_state();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Control& event :
        {Control{ControlKind::weights, {1, 0}, {}}, Control{ControlKind::weights, {0.5, 0, 0}, {}},
         Control{ControlKind::weights, {nan, 0, 1}, {}}, Control{ControlKind::camera, {}, "none"},
-        Control{ControlKind::zoom, {-1}, {}}, Control{ControlKind::orbit, {nan, 0}, {}}})
+        Control{ControlKind::zoom, {-1}, {}}, Control{ControlKind::orbit, {nan, 0}, {}},
+        Control{ControlKind::light, {3}, {}}, Control{ControlKind::light, {-1}, {}},
+        Control{ControlKind::light, {nan}, {}}, Control{ControlKind::dimmer, {1.5}, {}},
+        Control{ControlKind::dimmer, {}, {}}, Control{ControlKind::flake_white, {-0.1}, {}},
+        Control{ControlKind::flake_white, {nan}, {}}})
     EXPECT_FALSE(state.apply(event).any());
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "core/beyond.hpp"
 #include "core/colour.hpp"
 #include "packs/paint_pack_codec.hpp"
 #include "tests/unit/pack_samples.hpp"
@@ -95,6 +96,7 @@ TEST(PackBuilder, WhatItBuildsCanBeWrittenAndOpened) {
     EXPECT_GE(pack->info().errors[k].flake_w1_max, pack->info().errors[k].flake_w1_mean);
   }
   EXPECT_GT(pack->info().transport_cost, 0.0);
+  EXPECT_EQ(pack->info().beyond_limit, core::beyond_limit(pack->paint()));
 }
 
 TEST(PackBuilder, SmallestLevelIsTheMeanOfTheSlice) {

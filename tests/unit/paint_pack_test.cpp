@@ -59,6 +59,20 @@ TEST(PaintPack, ComesBackBitForBit) {
   }
 }
 
+TEST(PaintPack, StatesHowFarBeyondItMayGo) {
+  const TemporaryFolder folder;
+  SamplePack sample;
+  for (const double limit : {0.0, 0.35, 1.0}) {
+    sample.contents.info.beyond_limit = limit;
+    ASSERT_TRUE(write_paint_pack(folder / "p.lwp", sample.contents));
+    const auto pack = PaintPack::open(folder / "p.lwp");
+    ASSERT_TRUE(pack);
+    EXPECT_EQ(pack->info().beyond_limit, limit);
+    EXPECT_EQ(pack->info().schema_version, 3u);
+    EXPECT_EQ(pack->info().minimum_reader, 1u) << "older readers do without it";
+  }
+}
+
 TEST(PaintPack, SameContentsGiveTheSameBytesAndNoLeftovers) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_paint_pack(folder / "a.lwp", SamplePack().contents));
@@ -145,6 +159,9 @@ std::vector<BadMeaning> bad_meanings() {
       {"minimum_reader", [](SamplePack& s) { s.contents.info.minimum_reader = 0; }},
       {"schema_version", [](SamplePack& s) { s.contents.info.schema_version = 0; }},
       {"transport_cost", [](SamplePack& s) { s.contents.info.transport_cost = nan; }},
+      {"beyond_limit", [](SamplePack& s) { s.contents.info.beyond_limit = nan; }},
+      {"beyond_limit", [](SamplePack& s) { s.contents.info.beyond_limit = -0.05; }},
+      {"beyond_limit", [](SamplePack& s) { s.contents.info.beyond_limit = 1.05; }},
       {"tool_version", [](SamplePack& s) { s.contents.info.tool_version = "a\nb"; }},
       {"paints[1].name", [](SamplePack& s) { s.contents.paint.paints[1].identity.name = ""; }},
       {"paints[1].name", [](SamplePack& s) { s.contents.paint.paints[1].identity.name = "\xC0\x80"; }},

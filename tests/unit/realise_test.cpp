@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/colour.hpp"
+#include "tests/unit/one_slice_paint.hpp"
 #include "tests/unit/random_flakes.hpp"
 
 namespace lackwerk::core {
@@ -73,6 +74,60 @@ TEST(Realise, GroupsActOnTheirOwnAxes) {
     const auto& colour = own_cluster(paint, 2, row, t).q;
     for (std::size_t i = 0; i < 6; ++i) ASSERT_EQ(q[i], i < 2 ? lightness[i] : colour[i]);
   });
+}
+
+/// a and b of a grid number.
+double lab_of(const InterpolatablePaint& paint, std::size_t axis, double q) {
+  const auto c = static_cast<glm::length_t>(axis);
+  return static_cast<double>(paint.range.lo[c]) +
+         (static_cast<double>(paint.range.hi[c]) - static_cast<double>(paint.range.lo[c])) * q / 65535.0;
+}
+
+TEST(Realise, WhiteFlakesLoseTheirColourAndKeepTheirLight) {
+  std::mt19937 random(56);
+  const InterpolatableData data = build_or_fail(random_paints(random, 3, small_frame(), 30), small_frame());
+  const InterpolatablePaint paint = data.view();
+  for (const auto& w : {std::vector{0.0, 1.0, 0.0}, {0.2, 0.3, 0.5}, {1.4, -0.3, -0.1}}) {
+    Weights weights = Weights::uniform(w);
+    RealisedPaint coloured, white;
+    realise(paint, weights, coloured);
+    for (const double taken : {0.25, 0.5, 1.0}) {
+      weights.flake_white = taken;
+      realise(paint, weights, white);
+      ASSERT_EQ(white.corners.size(), coloured.corners.size());
+      each_tuple(paint, [&](std::size_t row, std::size_t n, std::size_t) {
+        const std::size_t at = row * static_cast<std::size_t>(white.width) + n;
+        const auto &now = white.corners[at].q, &before = coloured.corners[at].q;
+        ASSERT_EQ(now[0], before[0]);
+        ASSERT_EQ(now[1], before[1]);
+        for (std::size_t i = 2; i < 6; ++i) {
+          const std::size_t axis = i / 2;
+          // What extrapolation had clamped is no measure of what it comes from.
+          if (before[i] == 0 || before[i] == 65535) continue;
+          const double step = lab_of(paint, axis, 1.0) - lab_of(paint, axis, 0.0);
+          ASSERT_NEAR(lab_of(paint, axis, now[i]), (1.0 - taken) * lab_of(paint, axis, before[i]), 1.01 * step);
+        }
+      });
+      if (taken < 1.0) continue;
+      for (const glm::dvec3 mean : white.flake_mean)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], mean[1], 1e-3 * mean[1] + 1e-5);
+    }
+    weights.flake_white = 0.0;
+    realise(paint, weights, white);
+    EXPECT_EQ(white.corners, coloured.corners);
+    EXPECT_EQ(white.flake_mean, coloured.flake_mean);
+  }
+}
+
+TEST(Realise, AGridWithoutGreyGivesItsNearest) {
+  testing::OneSlicePaint one({{{{0, 100, 40000, 50000, 40000, 50000}}}, {1}}, {{{{0, 100, 40000, 50000, 0, 1}}}, {1}},
+                             1);
+  one.paint.range = {{0.0f, 10.0f, -40.0f}, {100.0f, 60.0f, -5.0f}};
+  Weights weights = Weights::uniform({1.0});
+  weights.flake_white = 1.0;
+  RealisedPaint out;
+  realise(one.paint, weights, out);
+  EXPECT_EQ(out.corners[0].q, (std::array<std::uint16_t, 6>{0, 100, 0, 0, 65535, 65535}));
 }
 
 TEST(Realise, NoCornerMovesFurtherThanTheWeights) {
@@ -197,6 +252,16 @@ TEST(CheckWeights, RefusesMistakes) {
   EXPECT_EQ(error({{0.5, 0.5}, {0.5, 0.6}, {0.5, 0.5}}).field, "weights.flake_lightness");
   EXPECT_EQ(error({{0.5, 0.5}, {0.5, 0.5}, {0.5, std::nan("")}}).field, "weights.flake_colour");
   EXPECT_EQ(error(Weights::uniform({0.5, std::numeric_limits<double>::infinity()})).kind, ErrorKind::usage);
+  Weights white = Weights::uniform({0.5, 0.5});
+  for (const double inside : {0.0, 0.5, 1.0}) {
+    white.flake_white = inside;
+    EXPECT_TRUE(check_weights(paint, white));
+  }
+  for (const double outside : {-1e-9, 1.0 + 1e-9, std::nan("")}) {
+    white.flake_white = outside;
+    EXPECT_EQ(error(white).field, "weights.flake_white");
+    EXPECT_EQ(error(white).kind, ErrorKind::usage);
+  }
 }
 
 AnalyticPaint lobed(std::initializer_list<Lobe> lobes) {

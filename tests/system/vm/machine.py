@@ -377,6 +377,18 @@ class Machine:
         self.until(f"USB device {ident} is gone", 30.0, gone)
         self.events = [e for e in self.events if e["data"].get("device") != ident]
 
+    def stick_plug(self, ident, folder):
+        """A USB stick with one FAT partition that holds a host folder's files; nothing can be written to it. The emulator
+        makes the file system up, so that no host needs tools for one."""
+        self.qmp("blockdev-add", driver="vvfat", node_name=f"{ident}-disk", dir=str(folder), fat_type=16, floppy=False,
+                 rw=False, read_only=True)
+        self.qmp("device_add", driver="usb-storage", id=ident, bus="usb.0", drive=f"{ident}-disk", removable=True)
+
+    def stick_pull(self, ident):
+        """Without asking anybody, as visitors do."""
+        self.usb_unplug(ident)
+        self.qmp("blockdev-del", node_name=f"{ident}-disk")
+
     # ---- traces for whoever must find out why
 
     def emulator_log(self):
@@ -394,6 +406,7 @@ class Machine:
         for name, command in (("journal.txt", "journalctl --no-pager -o short-monotonic -n 3000"),
                               ("kernel.txt", "dmesg"), ("units.txt", "systemctl --no-pager --failed; systemctl list-jobs"),
                               ("status.json", "cat /run/lackwerk/status.json"),
+                              ("import.json", "cat /run/lackwerk/import.json"),
                               ("input-devices.txt", "cat /proc/bus/input/devices; ls -l /dev/hidraw* /dev/dri")):
             try:
                 (folder / name).write_bytes(self.run(command, 30.0).raw)

@@ -19,6 +19,7 @@ from machine import Failure, Machine  # noqa: E402
 from testing import TESTS, Room, Skip  # noqa: E402
 import tests_devices  # noqa: E402,F401  (order: the room first, then who lives in it)
 import tests_kiosk  # noqa: E402,F401
+import tests_store  # noqa: E402,F401  (last: it changes which pack is shown)
 
 REQUIRED = os.environ.get("LACKWERK_REQUIRE_SYSTEM", "") not in ("", "0")
 EXIT_SKIPPED = 77

@@ -1,6 +1,7 @@
 """The kiosk as a thing in a room: screen, fingers, knobs, plugs, crashes, power cuts."""
 import json
 import os
+import pathlib
 import shutil
 import subprocess
 import time
@@ -14,13 +15,13 @@ STATUS = "/run/lackwerk/status.json"
 # A start compiles shaders on an emulated processor that others may be using too.
 START_S = 240.0
 ANSWER_S = 90.0    # until something that a customer does has arrived
-SLIDER_Y = 0.92    # in the lower strip; kiosk/display/gestures.hpp
-SLIDER_LEFT, SLIDER_RIGHT = 0.05, 0.95
+CAR = (0.4, 0.3)   # a place that the interface leaves to the car, on every screen
 # How far the picture on the panel may be from the headless one of the same state (CIEDE2000). The processors differ
 # (the emulated one has no FMA and other mediump), the text of the shaders does not: 0.012 and 0 were measured. The
 # picture before it was refined is 0.6 and 1.2 away.
 MOST_MEAN, MOST_P95 = 0.1, 0.6
 STILL_FRAMES = 2  # as in kiosk.toml
+KIOSK_TOML = pathlib.Path(__file__).parent / "kiosk.toml"
 
 
 def status(room):
@@ -43,6 +44,54 @@ def wait_weights(room, wanted, what):
         m.until(what, ANSWER_S, lambda: near(weights(room), wanted))
     except Failure as problem:
         raise Failure(f"{problem}: weights are {weights(room)}, not {wanted}") from problem
+
+
+def place(room, widget, index=0):
+    """Where something on the screen is, as status.json says: x and y in [0, 1] of the panel."""
+    found = {}
+
+    def there():
+        for control in status(room).get("controls", []):
+            if (control["widget"], control["index"]) == (widget, index):
+                found["at"] = (control["x"], control["y"])
+        return "at" in found
+
+    room.machine.until(f"{widget} {index} is on the screen", ANSWER_S, there)
+    return found["at"]
+
+
+def touch(room, gesture, *places, tail=""):
+    """A gesture of the touch screen at places, each a pair."""
+    numbers = " ".join(f"{number:.5f}" for at in places for number in at)
+    tell(room.machine, TOUCH, f"{gesture} {numbers} {tail}".strip())
+
+
+def tap_swatch(room, index, what):
+    wanted = [1.0 if k == index else 0.0 for k in range(3)]
+    touch(room, "tap", place(room, "swatch", index))
+    wait_weights(room, wanted, what)
+
+
+def wait_screen(room, wanted, what):
+    room.machine.until(what, ANSWER_S, lambda: status(room).get("screen") == wanted)
+
+
+def between(room):
+    """A place on the pad between the second and the third paint: their names do not reach there."""
+    one, two = place(room, "swatch", 1), place(room, "swatch", 2)
+    return ((one[0] + two[0]) / 2.0, (one[1] + two[1]) / 2.0)
+
+
+def begin_visit(room):
+    """A touch on the car: pad and sliders are there."""
+    if status(room).get("screen") != "show":
+        touch(room, "tap", CAR)
+    wait_screen(room, "show", "a touch begins a visit")
+
+
+def is_mix(now):
+    """Of two paints or more."""
+    return len(now) == 3 and near([sum(now)], [1.0], 1e-6) and sum(1 for w in now if w > 0.1) >= 2
 
 
 def device(room, name):
@@ -113,14 +162,15 @@ def settled_weights(room):
     return weights(room)
 
 
-def compare(room, name, tour=None):
-    """The panel's picture against a headless one of the same state, made here."""
+def compare(room, name, tour=None, tour_ms=0):
+    """The panel's picture against a headless one of the same state, made here: after the same touches."""
     shown, wanted = room.artefacts / f"{name}.panel.png", room.artefacts / f"{name}.headless.png"
     picture = room.machine.screen(shown)
-    frames = STILL_FRAMES + 2
+    # Names of mixes follow within 100 ms; then it rests.
+    frames = STILL_FRAMES + 2 + (0 if tour is None else (tour_ms + 500) * 30 // 1000)
     folder = room.artefacts / f"{name}.frames"
     # Recorded, not --screenshot: the recording holds what a panel would show after so many steps.
-    command = [room.build / "lackwerk-kiosk", "--platform", "surfaceless", "--pack", room.demo / "demo.lwp", "--scene",
+    command = [room.build / "lackwerk-kiosk", "--config", KIOSK_TOML, "--platform", "surfaceless", "--pack", room.demo / "demo.lwp", "--scene",
                room.demo / "sphere.lws", "--size", f"{picture.width}x{picture.height}", "--still-frames",
                str(STILL_FRAMES), "--quality", "soft", "--frames", str(frames), "--record", folder]
     if tour is not None:
@@ -195,38 +245,63 @@ def tap_and_drag(room):
     needs_kiosk(room)
     m = room.machine
     bring_touch(room)
-    tell(m, TOUCH, f"tap 0.5 {SLIDER_Y}")
-    wait_weights(room, [0, 1, 0], "a tap in the middle of the slider shows the second paint")
-    tell(m, TOUCH, f"drag 0.5 {SLIDER_Y} {SLIDER_RIGHT} {SLIDER_Y} 12 60")
-    wait_weights(room, [0, 0, 1], "a drag to the right end shows the last paint")
+    begin_visit(room)
+    tap_swatch(room, 1, "a tap on the second swatch shows the second paint")
+    touch(room, "drag", between(room), place(room, "swatch", 2), tail="12 60")
+    wait_weights(room, [0, 0, 1], "a drag over the pad to the last swatch shows the last paint")
     wait_rest(room)
-    compare(room, "last_paint", "0 weights 0 0 1\n")
+    compare(room, "last_paint", f"0 tap @picture:{CAR[0]},{CAR[1]}\n400 tap @swatch:1\n"
+            "1200 drag @pad:0.5,1 @swatch:2 over 600\n", 1800)
     # The emulator's own tablet: a pointer by USB.
-    m.tap(SLIDER_LEFT, SLIDER_Y)
-    wait_weights(room, [1, 0, 0], "a click at the left end shows the first paint")
-    m.drag(SLIDER_LEFT, SLIDER_Y, 0.275, SLIDER_Y)
-    wait_weights(room, [0.5, 0.5, 0], "a drag of the pointer mixes two paints")
-    wait_rest(room)
+    m.tap(*place(room, "swatch", 0))
+    wait_weights(room, [1, 0, 0], "a click on the first swatch shows the first paint")
+    x, y = between(room)
+    m.drag(x, y, x + 0.01, y - 0.03)
+    m.until("a drag of the pointer over the pad mixes paints", ANSWER_S, lambda: is_mix(weights(room)))
+    mixed = settled_weights(room)
     before = m.screen(room.artefacts / "before_orbit.png")
-    tell(m, TOUCH, "drag 0.3 0.4 0.6 0.5 8 60")
+    touch(room, "drag", CAR, (0.6, 0.45), tail="8 60")
     m.until("one finger on the car orbits", ANSWER_S, lambda: m.screen().changed_share(before) > 0.02)
     wait_rest(room)
     before = m.screen(room.artefacts / "before_pinch.png")
-    tell(m, TOUCH, "pinch 0.5 0.4 0.1 0.3 8 60")
+    touch(room, "pinch", CAR, tail="0.1 0.3 8 60")
     m.until("two fingers zoom", ANSWER_S, lambda: m.screen().changed_share(before) > 0.02)
     m.screen(room.artefacts / "after_pinch.png")
-    expect(near(weights(room), [0.5, 0.5, 0]), "orbit and zoom have moved the weights")
+    expect(near(weights(room), mixed), "orbit and zoom have moved the weights")
     room.note(f"latency as reported: {status(room)['latency']}")
-    # A screen that goes away with a finger on it lets go of the slider.
-    tell(m, TOUCH, f"down 0 0.5 {SLIDER_Y}")
-    wait_weights(room, [0, 1, 0], "a finger rests on the slider")
+    # A screen that goes away with a finger on it lets go of what it held.
+    tap_swatch(room, 1, "the second paint")
+    touch(room, "down 0", between(room))
+    m.until("a finger rests on the pad", ANSWER_S, lambda: is_mix(weights(room)))
     bring_touch(room)
-    tell(m, TOUCH, f"tap {SLIDER_LEFT} {SLIDER_Y}")
-    wait_weights(room, [1, 0, 0], "the screen that came back works")
+    tap_swatch(room, 0, "the screen that came back works")
+
+
+@test
+def compare_is_held(room):
+    """The nearest paint beside the mix, for as long as a finger is on the button."""
+    needs_kiosk(room)
+    m = room.machine
+    bring_touch(room)
+    begin_visit(room)
+    touch(room, "tap", between(room))
+    m.until("a mix", ANSWER_S, lambda: is_mix(weights(room)))
+    wait_rest(room)
+    before = m.screen()
+    touch(room, "down 0", place(room, "compare"))
+    m.until("the nearest paint shows beside it", ANSWER_S, lambda: m.screen().changed_share(before) > 0.02)
+    wait_rest(room)
+    m.screen(room.artefacts / "compare.png")
+    expect(is_mix(weights(room)), "the mix is lost")
+    tell(m, TOUCH, "up 0")
+    m.until("the mix alone again", ANSWER_S, lambda: m.screen().changed_share(before) < 0.02)
 
 
 def turns_the_morph(room, fifo, name):
-    """A quarter of the way to the next paint and back."""
+    """A quarter of the way to the next paint and back. Where nobody is, the first turn begins the visit; it also brings
+    the puck to the knob's path."""
+    tell(room.machine, fifo, "turn 1")
+    wait_screen(room, "show", f"{name} begins a visit")
     before = settled_weights(room)
     tell(room.machine, fifo, "turns 30 2 20")
     room.machine.until(f"{name} turns the morph", ANSWER_S, lambda: not near(weights(room), before, 0.01))
@@ -305,8 +380,8 @@ def flood_of_turns(room):
     tell(m, DIAL, "quit")
     m.until("the knob has been turned 10,000 times", ANSWER_S, lambda: m.run("systemctl is-active vm-dial").code != 0)
     wait_device(room, "Plain test knob", there=False)
-    tell(m, TOUCH, f"tap 0.5 {SLIDER_Y}")
-    wait_weights(room, [0, 1, 0], "a tap after 10,000 turns is answered")
+    begin_visit(room)
+    tap_swatch(room, 1, "a tap after 10,000 turns is answered")
     room.note(f"10,000 turns and a tap: {time.monotonic() - started:.1f} s")
     expect(pid(room) == process, "the kiosk was restarted")
 
@@ -317,14 +392,13 @@ def monitor_comes_and_goes(room):
     m = room.machine
     process = pid(room)
     bring_touch(room)
-    tell(m, TOUCH, f"tap 0.5 {SLIDER_Y}")
-    wait_weights(room, [0, 1, 0], "the second paint")
+    begin_visit(room)
+    tap_swatch(room, 1, "the second paint")
     wait_rest(room)
     before = m.screen()
     m.monitor(0, 0)
     m.until("the kiosk waits for a monitor", ANSWER_S, lambda: status(room).get("state") == "waiting_for_display")
-    tell(m, TOUCH, f"tap {SLIDER_RIGHT} {SLIDER_Y}")
-    wait_weights(room, [0, 0, 1], "a tap is taken without a monitor")
+    tap_swatch(room, 2, "a tap is taken without a monitor")
     m.monitor(800, 600)
     m.until("another monitor shows the picture", ANSWER_S * 2, lambda: status(room).get("state") == "running" and
             status(room)["mode"]["width"] == 800 and m.screen().width == 800 and m.screen().colours() > 200)
@@ -332,8 +406,7 @@ def monitor_comes_and_goes(room):
     m.monitor(*m.size)
     m.until("the first monitor shows it again", ANSWER_S * 2, lambda: status(room)["mode"]["width"] == m.size[0] and
             m.screen().width == m.size[0])
-    tell(m, TOUCH, f"tap 0.5 {SLIDER_Y}")
-    wait_weights(room, [0, 1, 0], "and is touched")
+    tap_swatch(room, 1, "and is touched")
     wait_rest(room)
     expect(m.screen(room.artefacts / "monitor_back.png").changed_share(before) < 0.02, "the picture is another one")
     expect(pid(room) == process, "the kiosk was restarted")

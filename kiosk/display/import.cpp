@@ -1,0 +1,253 @@
+#include "kiosk/display/import.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+
+#include "packs/signed_pack.hpp"
+#include "packs/storage.hpp"
+
+namespace lackwerk::kiosk {
+namespace {
+
+using Outcome = ImportedFile::Outcome;
+using Reader = packs::Storage::Reader;
+
+constexpr std::string_view pack_ending = ".lwp", signature_ending = ".minisig";
+
+/// Reads an open regular file, of the size it had.
+class FileReader final : public Reader {
+ public:
+  FileReader(std::string name, int fd, std::uint64_t size) : name_(std::move(name)), fd_(fd), size_(size) {}
+  ~FileReader() override { ::close(fd_); }
+  FileReader(const FileReader&) = delete;
+  FileReader& operator=(const FileReader&) = delete;
+  [[nodiscard]] std::uint64_t size() const override { return size_; }
+  [[nodiscard]] Result<std::size_t> read(std::span<std::uint8_t> into) override {
+    for (;;) {
+      const ssize_t n = ::read(fd_, into.data(), into.size());
+      if (n >= 0) return static_cast<std::size_t>(n);
+      if (errno != EINTR)
+        return fail(name_, "", std::strerror(errno), "leave the stick in until it is done, or copy it again");
+    }
+  }
+
+ private:
+  std::string name_;
+  int fd_;
+  std::uint64_t size_;
+};
+
+/// An open folder; what is opened in it is not followed anywhere else.
+class Folder {
+ public:
+  explicit Folder(int fd) : folder_(::fdopendir(fd), ::closedir) {
+    if (!folder_) ::close(fd);
+  }
+
+  /// Names that end in .lwp, sorted. Error: of the disk, or too many entries to look through.
+  [[nodiscard]] Result<std::vector<std::string>> packs() const {
+    const auto unreadable = [] { return fail(stick_folder, "", std::strerror(errno), "check the stick"); };
+    if (!folder_) return unreadable();
+    std::vector<std::string> names;
+    for (std::size_t entries = 0;; ++entries) {
+      errno = 0;
+      const dirent* entry = ::readdir(folder_.get());
+      if (entry == nullptr && errno != 0) return unreadable();
+      if (entry == nullptr) break;
+      if (entries == packs::max_folder_entries)
+        return fail(stick_folder, "", "more than " + std::to_string(entries) + " files", "leave only packs in it");
+      const std::string_view name = entry->d_name;
+      // Others put their own beside it: "._summer.lwp" and the like.
+      if (!name.starts_with('.') && name.ends_with(pack_ending)) names.emplace_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  /// A regular file of at most `most` bytes. A link, a pipe or a device of that name is refused and not touched.
+  [[nodiscard]] Result<std::unique_ptr<Reader>> open(const std::string& name, std::uint64_t most) const {
+    const int fd =
+        ::openat(::dirfd(folder_.get()), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (fd < 0 && errno == ENOENT)
+      return fail(name, "", "is not there", "copy the pack and its signature to the stick");
+    if (fd < 0 && errno == ELOOP) return fail(name, "", "is a symbolic link", "copy the file itself to the stick");
+    if (fd < 0) return fail(name, "", std::strerror(errno), "check the stick");
+    struct stat found {};
+    const bool is_regular = ::fstat(fd, &found) == 0 && S_ISREG(found.st_mode);
+    if (!is_regular || static_cast<std::uint64_t>(found.st_size) > most) {
+      ::close(fd);
+      if (!is_regular) return fail(name, "", "is not a regular file", "copy the file itself to the stick");
+      return fail(name, "size",
+                  std::to_string(found.st_size) + " bytes, at most " + std::to_string(most) + " are allowed",
+                  "this is another kind of file");
+    }
+    return std::make_unique<FileReader>(name, fd, static_cast<std::uint64_t>(found.st_size));
+  }
+
+ private:
+  std::unique_ptr<DIR, int (*)(DIR*)> folder_;
+};
+
+/// The stick's one folder, not through a link.
+Result<Folder> open_stick(const std::filesystem::path& stick) {
+  const int root = ::open(stick.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (root < 0) return fail(stick.string(), "", std::strerror(errno), "is the stick mounted?");
+  const int fd = ::openat(root, stick_folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  const int why = errno;
+  ::close(root);
+  if (fd < 0 && why == ENOENT)
+    return fail(stick_folder, "", "no such folder on the stick", "put the packs into a folder of this name");
+  if (fd < 0) return fail(stick_folder, "", std::strerror(why), "make it a folder of its own");
+  return Folder(fd);
+}
+
+Result<packs::Store::AddResult> add(const Folder& folder, const std::string& name, packs::Store& store,
+                                    const packs::Keyring& keyring, const ImportLimits& limits) {
+  auto pack = folder.open(name, limits.most_pack_bytes);
+  if (!pack) return tl::unexpected(pack.error());
+  // Whatever the store may take otherwise: from a stick nothing comes in without a signature.
+  auto signature = folder.open(name + std::string(signature_ending), packs::max_minisig_bytes);
+  if (!signature) return tl::unexpected(signature.error());
+  return store.add(name, **pack, signature->get(), keyring);
+}
+
+std::int64_t now_s() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+const char* outcome_name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::stored:
+      return "stored";
+    case Outcome::already_there:
+      return "already there";
+    case Outcome::refused:
+      break;
+  }
+  return "refused";
+}
+
+/// Names are whatever a stick says: on one line, and nothing that a terminal obeys.
+std::string on_one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+}  // namespace
+
+bool ImportReport::has_news() const {
+  return std::any_of(files.begin(), files.end(), [](const ImportedFile& f) { return f.outcome == Outcome::stored; });
+}
+
+bool ImportReport::is_good() const {
+  return error.empty() &&
+         std::none_of(files.begin(), files.end(), [](const ImportedFile& f) { return f.outcome == Outcome::refused; });
+}
+
+ImportReport import_folder(const std::filesystem::path& stick, packs::Store& store, const packs::Keyring& keyring,
+                           const ImportLimits& limits) {
+  ImportReport report;
+  report.time_s = now_s();
+  const auto stop = [&](const Error& why) {
+    report.error = on_one_line(why.line());
+    return report;
+  };
+  const auto folder = open_stick(stick);
+  if (!folder) return stop(folder.error());
+  auto names = folder->packs();
+  if (!names) return stop(names.error());
+  if (names->empty()) return stop({stick_folder, "", "no packs (*.lwp) in it", "copy packs and signatures there"});
+  if (names->size() > limits.most_packs) {
+    report.error = std::to_string(names->size()) + " packs on the stick; the first " +
+                   std::to_string(limits.most_packs) + " by name were looked at";
+    names->resize(limits.most_packs);
+  }
+  for (const std::string& name : *names) {
+    ImportedFile& file = report.files.emplace_back();
+    file.file = name;
+    const auto added = add(*folder, name, store, keyring, limits);
+    if (!added) {
+      file.error = on_one_line(added.error().line());
+      continue;
+    }
+    file.outcome = added->what == packs::Store::Added::stored ? Outcome::stored : Outcome::already_there;
+    file.id = added->pack.id;
+    file.serial = added->pack.current.serial;
+    if (added->signed_by) file.key = packs::key_id_text(*added->signed_by);
+  }
+  return report;
+}
+
+std::string import_lines(const ImportReport& report) {
+  std::string lines;
+  for (const ImportedFile& file : report.files)
+    lines += file.outcome == Outcome::refused
+                 ? "refused: " + file.error + "\n"
+                 : on_one_line(file.file) + ": " + file.id + " " + std::to_string(file.serial) + " is " +
+                       (file.outcome == Outcome::stored ? "in use now" : "there already") + ", key " + file.key + "\n";
+  if (!report.error.empty()) lines += report.error + "\n";
+  return lines;
+}
+
+std::string import_json(const ImportReport& report) {
+  nlohmann::ordered_json out{{"time_s", report.time_s},
+                             {"good", report.is_good()},
+                             {"error", report.error},
+                             {"files", nlohmann::ordered_json::array()}};
+  for (const ImportedFile& file : report.files) {
+    nlohmann::ordered_json entry{{"file", file.file}, {"result", outcome_name(file.outcome)}};
+    if (file.outcome == Outcome::refused)
+      entry["error"] = file.error;
+    else
+      entry.update({{"id", file.id}, {"serial", file.serial}, {"key", file.key}});
+    out["files"].push_back(std::move(entry));
+  }
+  // Names need not be UTF-8.
+  return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Result<void> write_import(const std::filesystem::path& folder, const ImportReport& report) {
+  const std::string text = import_json(report), name = import_file_name;
+  // Of each process its own: two sticks may be imported at once.
+  const std::string fresh = "." + name + "." + std::to_string(::getpid());
+  const auto disk = packs::open_disk(folder);
+  auto writer = disk->create(fresh);
+  if (!writer) return tl::unexpected(writer.error());
+  auto done = (*writer)->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  if (done) done = disk->rename(fresh, name);
+  if (!done) {
+    [[maybe_unused]] const auto removed = disk->remove_file(fresh);
+  }
+  return done;
+}
+
+Result<bool> import_stick(const ImportPlaces& places) {
+  const auto disk = packs::open_disk(places.store);
+  packs::Store store(*disk, {}, packs::check_paint_pack);
+  const auto keyring = packs::Keyring::open(places.keyring);
+  ImportReport report;
+  if (keyring) {
+    report = import_folder(places.stick, store, *keyring, {});
+  } else {
+    report.time_s = now_s();
+    report.error = on_one_line(keyring.error().line());
+  }
+  std::fputs(import_lines(report).c_str(), stdout);
+  if (auto written = write_import(places.report, report); !written) return tl::unexpected(written.error());
+  return report.is_good();
+}
+
+}  // namespace lackwerk::kiosk

@@ -1,0 +1,67 @@
+// Takes packs from a stick into the store: what lackwerk-import@.service runs.
+//
+// Why it exists: a stick is a stranger. It is mounted read-only, looked at in one folder only, and never through a
+// link; every size is known before a byte is read; what is shown of it are the store's own verdicts. Free functions;
+// one thread, any number of processes (the store has a lock).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "packs/keyring.hpp"
+#include "packs/sealed_file.hpp"
+#include "packs/store.hpp"
+
+namespace lackwerk::kiosk {
+
+/// The one folder of a stick that is looked at.
+inline constexpr const char* stick_folder = "lackwerk";
+inline constexpr const char* import_file_name = "import.json";
+
+struct ImportLimits {
+  std::size_t most_packs = 16;                                  ///< the first by name
+  std::uint64_t most_pack_bytes = packs::max_paint_pack_bytes;  ///< of each
+};
+
+struct ImportedFile {
+  enum class Outcome { stored, already_there, refused };
+  std::string file;  ///< its name, without the folder
+  Outcome outcome = Outcome::refused;
+  std::string id, key;  ///< as verified; empty where it was refused
+  std::uint64_t serial = 0;
+  std::string error;  ///< one line; empty where it was not refused
+};
+
+struct ImportReport {
+  std::vector<ImportedFile> files;  ///< by name
+  std::string error;                ///< of the stick as a whole; empty where there is none
+  std::int64_t time_s = 0;          ///< of the wall clock, seconds since 1970
+  /// Whether anything is in use now that was not before.
+  [[nodiscard]] bool has_news() const;
+  [[nodiscard]] bool is_good() const;
+};
+
+/// Every NAME.lwp of `stick`/lackwerk that is a regular file with a regular NAME.lwp.minisig beside it goes through
+/// Store::add, by name; all others of that name are refused with a reason. `stick`: where it is mounted.
+[[nodiscard]] ImportReport import_folder(const std::filesystem::path& stick, packs::Store& store,
+                                         const packs::Keyring& keyring, const ImportLimits& limits);
+
+/// A line for each file, and one for the stick where that has a fault.
+[[nodiscard]] std::string import_lines(const ImportReport& report);
+/// What the kiosk shows for some seconds; keys as in docs/packs-and-store.md.
+[[nodiscard]] std::string import_json(const ImportReport& report);
+/// Replaces `folder`/import.json in one step, so that nobody reads half of it.
+[[nodiscard]] Result<void> write_import(const std::filesystem::path& folder, const ImportReport& report);
+
+struct ImportPlaces {
+  std::filesystem::path stick, store, keyring;
+  std::filesystem::path report;  ///< folder of import.json
+};
+/// All of it: store and keyring opened, packs imported, lines printed to standard output, import.json written. False:
+/// something was refused. Error: of the report's folder.
+[[nodiscard]] Result<bool> import_stick(const ImportPlaces& places);
+
+}  // namespace lackwerk::kiosk
