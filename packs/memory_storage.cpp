@@ -36,7 +36,7 @@ class MemoryWriter final : public Storage::Writer {
   MemoryWriter(MemoryStorage& storage, std::string path, std::shared_ptr<MemoryStorage::Content> content)
       : storage_(storage), path_(std::move(path)), content_(std::move(content)) {}
   [[nodiscard]] Result<void> write(std::span<const std::uint8_t> bytes) override {
-    const auto met = storage_.meet(path_, true);
+    auto met = storage_.meet(path_, true);
     if (!met) bytes = bytes.first(bytes.size() / 2);
     content_->now.insert(content_->now.end(), bytes.begin(), bytes.end());
     return met;

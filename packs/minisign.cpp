@@ -114,9 +114,9 @@ std::array<std::uint8_t, 32> key_checksum(std::span<const std::uint8_t> id_and_k
 std::string key_id_text(const KeyId& id) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string out;
-  for (auto byte = id.rbegin(); byte != id.rend(); ++byte) {
-    out += digits[*byte >> 4u];
-    out += digits[*byte & 15u];
+  for (std::size_t k = id.size(); k-- > 0;) {
+    out += digits[id[k] >> 4u];
+    out += digits[id[k] & 15u];
   }
   return out;
 }

@@ -84,7 +84,7 @@ Result<StoreState> parse_store_state(std::string_view text, const std::string& f
   const bool shown_is_there = state.packs.empty() ? state.shown.empty() : state.find(state.shown) != nullptr;
   if (!shown_is_there) return fail(file, "line 2", "names a pack that is not there", std::string(remedy));
   // Whatever else a text may hide is found here: it must be what would have been written.
-  if (store_state_text(state) != whole) return fail(file, "", "is not of a store's state", std::string(remedy));
+  if (store_state_text(state) != whole) return fail(file, "line 2", "is not of a store's state", std::string(remedy));
   return state;
 }
 

@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   auto [config, errors] = kiosk::parse_config(text, "fuzz.toml");
   for (const Error& error : errors) require(is_line(error, size) && !error.what.empty() && !error.remedy.empty());
-  require(config.packs.size() <= 64 && config.picture.frame_ms >= 1 && config.picture.frame_ms <= 1000);
+  require(config.packs.files.size() <= 64 && config.picture.frame_ms >= 1 && config.picture.frame_ms <= 1000);
   require(config.output.refresh_hz >= 0 && config.output.mode_px[0] >= 0 && config.output.mode_px[0] <= 8192);
   require(config.touch.size() <= input::max_touch_settings);
   require(config.knobs.devices.size() <= kiosk::max_knob_settings);

@@ -104,10 +104,17 @@ void sun(cairo_t* cr) {
   cairo_stroke(cr);
 }
 
-/// Light tubes side by side.
-void stripes(cairo_t* cr) {
-  for (const double x : {-0.62, 0.0, 0.62}) segment(cr, x - 0.24, 0.76, x + 0.24, -0.76);
-  cairo_set_line_width(cr, 2.0 * line);
+/// The sun on the horizon, its light to the sides and up.
+void evening(cairo_t* cr) {
+  cairo_arc(cr, 0.0, 0.3, 0.44, pi, 2.0 * pi);
+  cairo_close_path(cr);
+  cairo_fill_preserve(cr);
+  cairo_stroke(cr);
+  segment(cr, -0.94, 0.62, 0.94, 0.62);
+  for (const double angle : {1.1, 1.5, 1.9}) {
+    const double x = std::cos(angle * pi), y = std::sin(angle * pi);
+    segment(cr, 0.7 * x, 0.3 + 0.7 * y, 0.96 * x, 0.3 + 0.96 * y);
+  }
   cairo_stroke(cr);
 }
 
@@ -231,8 +238,8 @@ void draw_icon(cairo_t* cr, Icon icon, Place centre, double size, const Colour& 
     case Icon::sun:
       sun(cr);
       break;
-    case Icon::stripes:
-      stripes(cr);
+    case Icon::evening:
+      evening(cr);
       break;
     case Icon::moon:
       moon(cr);

@@ -21,7 +21,7 @@ enum class Icon : std::uint8_t {
   lock_closed,
   soft_box,
   sun,
-  stripes,
+  evening,
   moon,
   compare,
   qr,

@@ -97,7 +97,7 @@ constexpr std::array dock_widgets{Widget::compare, Widget::take_home};
 constexpr int slider_panel = 0, light_panel = 1, dock_panel = 2, name_panel = 4;
 
 void draw_control(const Look& look, cairo_t* cr, const Item& item) {
-  constexpr std::array light_icons{Icon::soft_box, Icon::sun, Icon::stripes};
+  constexpr std::array light_icons{Icon::soft_box, Icon::sun, Icon::evening};
   const Model& model = look.model;
   for (const SliderLook& slider : sliders_of(model))
     if (slider.widget == item.widget) return draw_slider(look, cr, item, slider);

@@ -5,8 +5,10 @@ import shutil
 import subprocess
 import time
 
+import payload
 from testing import Skip, expect, test
-from tests_kiosk import ANSWER_S, needs_kiosk, wait_picture
+from machine import patience
+from tests_kiosk import ANSWER_S, UNIT, needs_kiosk, pid, status, wait_picture, wait_rest
 
 IMPORT = "/run/lackwerk/import.json"
 STORE = "/var/lib/lackwerk/store"
@@ -46,13 +48,24 @@ class Maker:
         (folder / "lackwerk").mkdir(parents=True)
         return folder
 
-    def put(self, stick, name="demo.lwp"):
-        """The demo pack, signed."""
+    def put(self, stick, name="demo.lwp", source=None):
+        """The demo pack or another one, signed."""
         pack = stick / "lackwerk" / name
-        shutil.copyfile(self.room.demo / "demo.lwp", pack)
+        shutil.copyfile(source or self.room.demo / "demo.lwp", pack)
         subprocess.run([self.room.build / "lackwerk", "pack", "sign", pack, "--secret", self.secret], check=True,
                        stdout=subprocess.DEVNULL)
         return pack
+
+
+def other_pack(room):
+    """A small pack of one paint, unlike the demo's."""
+    folder, pack = room.artefacts / "other.capture", room.artefacts / "other.lwp"
+    recipe = payload.SOURCE / "packs" / "recipes" / "gu_opel_titan_coated.toml"
+    subprocess.run([room.build / "lackwerk", "capture", recipe, "-o", folder, "--edge", "16"], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([room.build / "lackwerk", "pack", "build", folder, "-o", pack, "--id", "other", "--serial", "7"],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return pack
 
 
 def plug(room, stick):
@@ -160,7 +173,7 @@ def stick_is_mounted_harmlessly(room):
 
 
 @test
-def store_survives_a_power_cut(room):
+def store_survives_losing_power(room):
     needs_importer(room)
     m = room.machine
     m.run(f"rm -rf {STORE}")
@@ -180,3 +193,51 @@ def store_survives_a_power_cut(room):
     expect(result["good"], f"the store is not usable any more: {result}")
     expect(m.read(f"ls {STORE}/staging 2>/dev/null | wc -l") == "0", "something was left in staging")
     wait_picture(room)
+
+
+@test
+def stick_changes_the_paint(room):
+    """A kiosk that shows what the store holds: empty at first, then a stick, then another one while it runs."""
+    needs_importer(room)
+    m = room.machine
+    text = m.read("cat /etc/lackwerk/kiosk.toml")
+    m.run(f"systemctl stop {UNIT}; rm -rf {STORE} {KEYS}/revoked", 60, check=True)
+    maker = Maker(room, "swap")
+    maker.trust("swap")
+    try:
+        ours = "\n".join(line for line in text.splitlines() if not line.startswith(("packs", "allow_unsigned")))
+        m.put("/etc/lackwerk/kiosk.toml", ours.encode())
+        m.run(f"systemctl start --no-block {UNIT}", check=True)
+        m.until("a kiosk without a pack says so", ANSWER_S,
+                lambda: "store is empty" in m.run(f"journalctl -u {UNIT} -n 50 --no-pager").out)
+        stick = maker.stick("first")
+        maker.put(stick)
+        expect(plug(room, stick)["good"], "the first stick was refused")
+        pull(room)
+        wait_picture(room)
+        wait_rest(room)
+        process, before = pid(room), m.screen(room.artefacts / "swap.before.png")
+        expect(status(room)["packs"][0]["signed"], "the pack is signed, the status says otherwise")
+        stick = maker.stick("second")
+        maker.put(stick, "other.lwp", other_pack(room))
+        expect(plug(room, stick)["good"], "the second stick was refused")
+        darkest, changes, end = 1.0, 0, time.monotonic() + ANSWER_S
+        while status(room)["packs"][0]["id"] != "other" or not status(room)["resting"]:
+            shown = m.screen()
+            changes += shown.changed_share(before) > 0.01
+            darkest = min(darkest, shown.colours() / before.colours())
+            expect(time.monotonic() < end, "the other pack is not shown")
+        pull(room)
+        after = m.screen(room.artefacts / "swap.after.png")
+        room.note(f"pack to pack: {changes} screens seen on the way, fewest colours {darkest:.2f} of before")
+        expect(after.changed_share(before) > 0.05, "the picture is the same")
+        expect(darkest > 0.2, "there was a black screen on the way")
+        expect(pid(room) == process, "the kiosk was restarted")
+        # A pack that was damaged after it was stored never shows.
+        m.run(f"f=$(find {STORE}/packs/other -name pack.lwp); printf x >> $f; touch {STORE}/x; mv {STORE}/x {STORE}/state2; "
+              f"cp {STORE}/state {STORE}/y; mv {STORE}/y {STORE}/state", check=True)
+        time.sleep(3.0)
+        expect(pid(room) == process and status(room)["packs"][0]["id"] == "other", "a damaged file ended the kiosk")
+    finally:
+        m.put("/etc/lackwerk/kiosk.toml", text.encode())
+        m.run(f"rm -rf {STORE}; systemctl restart --no-block {UNIT}", 60)
