@@ -177,6 +177,7 @@ struct EvdevDials::Dial {
   double pause_ms = first_retry_ms;
   int faults = 0;
   std::string fault;
+  std::uint64_t heard = 0;
 
   std::array<double, 3> counts{};
   std::vector<std::pair<std::size_t, bool>> keys;
@@ -354,7 +355,9 @@ void EvdevDials::read(double now_ms, std::vector<Control>& out) {
       dial->retry_ms = now_ms + dial->pause_ms;
       dial->knob.let_go(now_us);
     }
+    const std::size_t before = out.size();
     dial->knob.take(now_ms, most - out.size(), out);
+    dial->heard += out.size() - before;
   }
   std::erase_if(dials_, [](const auto& dial) { return dial->gone && !dial->knob.has_pending(); });
 }
@@ -377,7 +380,7 @@ void EvdevDials::add_devices(std::vector<DeviceStatus>& out) const {
                    ready  ? "ready"
                    : gone ? "gone"
                           : "waiting",
-                   dial->device.node + (dial->fault.empty() ? "" : ": " + dial->fault)});
+                   dial->device.node + (dial->fault.empty() ? "" : ": " + dial->fault), dial->heard});
   }
 }
 

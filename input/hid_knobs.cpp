@@ -75,6 +75,7 @@ struct HidKnobs::Port {
   State state = State::queued;
   std::string detail;
   std::optional<HidKnob> knob;
+  std::uint64_t heard = 0;
   Notices notices;
 
   std::thread thread;
@@ -295,7 +296,8 @@ void HidKnobs::reap() {
     if (was_knob) {
       notices_.add(false, "knob '" + (*port)->name + "' (" + (*port)->node.path + ") is gone");
       if (gone_.size() == max_gone) gone_.erase(gone_.begin());
-      gone_.push_back({(*port)->name, "knob", "gone", "unplugged, out of reach or asleep; it may come back any time"});
+      gone_.push_back({(*port)->name, "knob", "gone", "unplugged, out of reach or asleep; it may come back any time",
+                       (*port)->heard});
     }
     port = ports_.erase(port);
   }
@@ -313,7 +315,9 @@ void HidKnobs::collect(double now_ms, std::vector<Control>& out) {
   for (std::size_t k = 0; k < count && out.size() < most; ++k) {
     Port& port = *ports_[(turn_ + k) % count];
     const std::lock_guard lock(port.mutex);
+    const std::size_t before = out.size();
     if (port.knob) port.knob->knob().take(now_ms, most - out.size(), out);
+    port.heard += out.size() - before;
   }
   if (count > 0) turn_ = (turn_ + 1) % count;
 }
@@ -364,21 +368,21 @@ void HidKnobs::add_devices(std::vector<DeviceStatus>& out) const {
       case Port::State::left_alone:
         break;
       case Port::State::ready:
-        out.push_back({port->name, "knob", "ready", where});
+        out.push_back({port->name, "knob", "ready", where, port->heard});
         break;
       case Port::State::refused:
-        out.push_back({port->name, "knob", "refused", where});
+        out.push_back({port->name, "knob", "refused", where, port->heard});
         break;
       case Port::State::gone:
-        out.push_back({port->name, "knob", "gone", where});
+        out.push_back({port->name, "knob", "gone", where, port->heard});
         break;
       case Port::State::opening:
         // Most of these turn out to be mice and keyboards; they are told when they turn out to be knobs.
-        if (port->knob) out.push_back({port->name, "knob", "waiting", where});
+        if (port->knob) out.push_back({port->name, "knob", "waiting", where, port->heard});
         break;
       case Port::State::queued:
       case Port::State::waiting:
-        out.push_back({port->name, "knob", "waiting", where});
+        out.push_back({port->name, "knob", "waiting", where, port->heard});
         break;
     }
   }

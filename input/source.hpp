@@ -5,6 +5,7 @@
 // end with it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,10 +16,11 @@ namespace lackwerk::input {
 
 /// One device as `status.json` and the dealer's screen list it.
 struct DeviceStatus {
-  std::string name;    ///< what the device calls itself, cleaned of control characters
-  std::string kind;    ///< "touch", "knob", "dial"
-  std::string state;   ///< "ready", "waiting" (retried), "refused", "gone"
-  std::string detail;  ///< node, and for the latter two why and what to do
+  std::string name;         ///< what the device calls itself, cleaned of control characters
+  std::string kind;         ///< "touch", "knob", "dial"
+  std::string state;        ///< "ready", "waiting" (retried), "refused", "gone"
+  std::string detail;       ///< node, and for the latter two why and what to do
+  std::uint64_t heard = 0;  ///< turns and presses, or events of fingers, since it was plugged in: does it work at all?
 };
 
 /// What a source wants to have said in the log; the kiosk gives each line its priority.

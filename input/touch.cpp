@@ -116,7 +116,7 @@ void TouchScreens::add_devices(std::vector<DeviceStatus>& out) const {
     else if (is_elsewhere(device))
       detail += ": bound to " + device.bound;
     const bool used = device.refused.empty() && !is_elsewhere(device);
-    out.push_back({clean_name(device.info.name), "touch", used ? "ready" : "refused", std::move(detail)});
+    out.push_back({clean_name(device.info.name), "touch", used ? "ready" : "refused", std::move(detail), device.heard});
   }
 }
 
@@ -137,6 +137,7 @@ void TouchScreens::take(const RawTouch& event, bool dying) {
   if (found == devices_.end()) return;
   Device& device = found->second;
   if (!device.refused.empty() || is_elsewhere(device)) return;
+  ++device.heard;
   const ControlKind end_kind = dying ? ControlKind::touch_cancel : ControlKind::touch_up;
   switch (event.kind) {
     case Kind::down:

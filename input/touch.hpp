@@ -60,6 +60,7 @@ class TouchScreens final : public Source {
     std::string refused;      ///< why it is not used; empty: it is
     bool too_many = false;    ///< more fingers than max_fingers were said
     double x = 0.5, y = 0.5;  ///< where a pointer is
+    std::uint64_t heard = 0;
   };
   struct Contact {
     int device, slot, number;

@@ -76,6 +76,7 @@ void Live::take_input(double now_ms) {
   report_due_ |= !notices_.empty();
   notices_.clear();
   if (!controls_.empty()) touched_ms_ = now_ms;
+  report_due_ |= !controls_.empty();
   for (const input::Control& control : controls_) apply(interface_.take(control, now_ms), control.time_us);
   take_script(now_ms);
   apply(interface_.advance(now_ms, settings_.minute_of_day()), 0);

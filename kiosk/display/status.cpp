@@ -84,8 +84,11 @@ std::string status_json(const Status& status, double now_ms) {
                                {"y", rounded(control.y, 1e-5)}});
   out["devices"] = Json::array();
   for (const input::DeviceStatus& device : status.devices)
-    out["devices"].push_back(
-        {{"name", device.name}, {"kind", device.kind}, {"state", device.state}, {"detail", device.detail}});
+    out["devices"].push_back({{"name", device.name},
+                              {"kind", device.kind},
+                              {"state", device.state},
+                              {"detail", device.detail},
+                              {"heard", device.heard}});
   out["errors"] = Json::array();
   for (const Log::Entry& problem : status.problems)
     out["errors"].push_back({{"age_s", rounded((now_ms - problem.at_ms) * 1e-3, 0.1)},

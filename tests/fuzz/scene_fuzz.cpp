@@ -46,7 +46,7 @@ class Sample {
     }
   }
   void restore() {
-    for (auto change = before_.rbegin(); change != before_.rend(); ++change) payload_[change->place] = change->value;
+    for (std::size_t k = before_.size(); k-- > 0;) payload_[before_[k].place] = before_[k].value;
     before_.clear();
   }
   [[nodiscard]] const std::vector<std::uint8_t>& payload() const { return payload_; }

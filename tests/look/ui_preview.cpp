@@ -56,6 +56,7 @@ DealerFacts facts() {
   out.status.packs = {{"/var/lib/lackwerk/packs/lackwerk.demo.4.lwp",
                        "lackwerk.demo",
                        4,
+                       true,
                        {"Polaris Silber mit Klarlack (Guenther et al. 2005)", "Opel Titan", "Mystic Blue"}}};
   out.status.quality = "moving, 2 angle taps";
   out.status.frame_ms = 14.2;

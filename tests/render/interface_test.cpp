@@ -12,7 +12,6 @@
 namespace lackwerk::test {
 namespace {
 
-using input::Control;
 using input::ControlKind;
 using kiosk::Rotation;
 using kiosk::ui::Screen;

@@ -127,6 +127,10 @@ TEST_F(HidKnobsTest, APluggedKnobTurns) {
   for (int k = 0; k < 10; ++k) ASSERT_TRUE(bus_->send(key, {0x00, 0x03}));
   ASSERT_TRUE(read_until([&] { return detents() > 29.5; }));
   EXPECT_NEAR(detents(), 30.0, 1e-9);
+  std::vector<DeviceStatus> devices;
+  knobs_->add_devices(devices);
+  ASSERT_EQ(devices.size(), 1u);
+  EXPECT_EQ(devices[0].heard, controls_.size()) << "whoever installs it sees that it is heard";
   EXPECT_EQ(controls_[0].name, "wheel");
   EXPECT_GT(controls_[0].time_us, 0u);
   EXPECT_NE(notices().find("knob 'wheel'"), std::string::npos);

@@ -210,7 +210,8 @@ TEST_F(Import, AllOfItOnADisk) {
   bytes.insert(bytes.end(), key.key.begin(), key.key.end());
   std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
   sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_ORIGINAL);
-  put(disk / "keys/maker.pub", std::string("untrusted comment: a maker\n") + text.c_str() + "\n");
+  text.pop_back();  // sodium ends it with a zero
+  put(disk / "keys/maker.pub", "untrusted comment: a maker\n" + text + "\n");
   done = import_stick(places);
   ASSERT_TRUE(done);
   EXPECT_TRUE(*done);

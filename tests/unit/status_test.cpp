@@ -27,7 +27,7 @@ Status sample() {
   status.language = "de";
   status.controls = {{"swatch", 1, 0.25, 0.75}};
   status.weights.flake_white = 0.5;
-  status.devices = {{"dial \xff\"\n", "knob", "ready", "/dev/hidraw0"}};
+  status.devices = {{"dial \xff\"\n", "knob", "ready", "/dev/hidraw0", 7}};
   status.problems = {{500.0, Priority::warning, "late", 2}};
   status.started_ms = 1000.0;
   return status;
@@ -57,6 +57,7 @@ TEST(Status, SaysWhatIsShownAndWhy) {
   EXPECT_EQ(json["frames"]["presented"], 11);
   EXPECT_EQ(json["errors"][0]["times"], 2);
   EXPECT_DOUBLE_EQ(json["errors"][0]["age_s"], 3.0);
+  EXPECT_EQ(json["devices"][0]["heard"], 7);
   // A device's name is not UTF-8: it is replaced, not passed on and not the end of the kiosk.
   EXPECT_NE(json["devices"][0]["name"].get<std::string>().find("dial"), std::string::npos);
 }

@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import time
 
-from machine import Failure, patience
+from machine import Failure
 from testing import Skip, expect, test
 from tests_devices import DIAL, TOUCH, descriptors, plug_gadget, plug_touch, plug_uhid, tell
 
@@ -303,13 +303,19 @@ def compare_is_held(room):
     m.until("the mix alone again", ANSWER_S, lambda: m.screen().changed_share(before) < 0.02)
 
 
+def knob_heard(room):
+    """What has come from the knob that is ready, by the kiosk's count."""
+    return next((d["heard"] for d in status(room).get("devices", []) if d["kind"] == "knob" and d["state"] == "ready"), 0)
+
+
 def turns_the_morph(room, fifo, name):
     """A quarter of the way to the next paint and back. Where nobody is, the first turn begins the visit; it also brings
     the puck to the knob's path."""
+    heard = knob_heard(room)
     tell(room.machine, fifo, "turn 1")
+    # In a visit this turn may change nothing: only the kiosk's count says that it has arrived.
+    room.machine.until(f"{name} is heard", ANSWER_S, lambda: knob_heard(room) != heard)
     wait_screen(room, "show", f"{name} begins a visit")
-    # In a visit nothing says that this turn has arrived: it may have changed nothing.
-    time.sleep(3.0 * patience())
     before = settled_weights(room)
     tell(room.machine, fifo, "turns 30 2 20")
     room.machine.until(f"{name} turns the morph", ANSWER_S, lambda: not near(weights(room), before, 0.01))
