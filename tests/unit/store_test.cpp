@@ -51,7 +51,8 @@ class Maker {
     bytes.resize(bytes.size() + 32);
     std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
     sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_ORIGINAL);
-    text_ = std::string("untrusted comment: a test\n") + text.c_str() + "\n";
+    text.pop_back();  // sodium ends it with a zero
+    text_ = "untrusted comment: a test\n" + text + "\n";
   }
   [[nodiscard]] SecretKey key() const { return std::move(SecretKey::parse(text_, "", "test.key").value()); }
   [[nodiscard]] Keyring ring() const { return Keyring({key().public_key()}, {}); }
