@@ -2,7 +2,8 @@
 // for its noise. With PROFILE, WARNING and TABLE_SIZE defined.
 varying vec2 v_at;  // in the picture, row 0 at the bottom
 uniform sampler2D u_picture;
-uniform float u_bgr;  // 1: blue first
+uniform float u_bgr;         // 1: blue first
+uniform float u_brightness;  // of the picture's display values, [0, 1]
 #if PROFILE
 // Numbers in [0, 1] of 16 bits, high byte in x and low byte in y. Rows from below: the pixel value of each of the
 // panel's channels by the square root of its light, and the square root of light by the picture's 8-bit sRGB value.
@@ -24,7 +25,7 @@ float pixel(float lit, float row) {
 #endif
 
 void main() {
-  vec3 c = texture2D(u_picture, v_at).xyz;
+  vec3 c = u_brightness * texture2D(u_picture, v_at).xyz;
 #if PROFILE
   vec3 lit = u_panel * vec3(light(c.x), light(c.y), light(c.z));
   // Noise before the second rounding, too, or the curve would band what the picture's own noise had smoothed. Its axes

@@ -11,6 +11,7 @@
 
 #include "input/touch.hpp"
 #include "kiosk/display/interface_words.hpp"
+#include "kiosk/display/pin_pad.hpp"
 
 namespace lackwerk::kiosk {
 namespace {
@@ -23,6 +24,11 @@ constexpr const char* beyond_key = "beyond";
 constexpr const char* motion_key = "reduced_motion";
 constexpr const char* brightness_key = "brightness";
 constexpr const char* calibration_key = "calibration";
+constexpr const char* pin_wrong_key = "pin_wrong";
+constexpr const char* pin_lock_key = "pin_lock_s";
+constexpr const char* pin_until_key = "pin_locked_until_s";
+/// Seconds since 1970 that a clock may say: until the year 9999.
+constexpr double most_wall_s = 253'402'300'799.0;
 
 /// Reads one key after the other and keeps the first that is wrong.
 class Reader {
@@ -45,6 +51,11 @@ class Reader {
     if (value == nullptr) return;
     const double number = value->is_number() ? value->get<double>() : least - 1.0;
     number >= least&& number <= most ? void(to = number) : refuse(key);
+  }
+  void take(const char* key, int& to, int least, int most) {
+    double number = to;
+    take(key, number, least, most);
+    to = static_cast<int>(number);
   }
   void take(const char* key, std::optional<input::CalibrationMatrix>& to) {
     const Json* value = find(key);
@@ -111,7 +122,7 @@ std::filesystem::path choices_folder() {
 }
 
 DealerChoices choices_of(const ExperienceSettings& settings) {
-  return {settings.language, settings.beyond_allowed, settings.reduced_motion, settings.brightness, {}};
+  return {settings.language, settings.beyond_allowed, settings.reduced_motion, settings.brightness, {}, settings.pin};
 }
 
 ExperienceSettings with_choices(ExperienceSettings settings, const DealerChoices& choices) {
@@ -120,6 +131,7 @@ ExperienceSettings with_choices(ExperienceSettings settings, const DealerChoices
   settings.reduced_motion = choices.reduced_motion;
   settings.brightness = choices.brightness;
   settings.calibration = choices.calibration;
+  settings.pin = choices.pin;
   return settings;
 }
 
@@ -128,7 +140,10 @@ std::string text_of(const DealerChoices& choices) {
            {beyond_key, choices.beyond_allowed},
            {motion_key, choices.reduced_motion},
            {brightness_key, choices.brightness},
-           {calibration_key, nullptr}};
+           {calibration_key, nullptr},
+           {pin_wrong_key, choices.pin.wrong},
+           {pin_lock_key, choices.pin.lock_s},
+           {pin_until_key, choices.pin.locked_until_s}};
   if (choices.calibration) out[calibration_key] = *choices.calibration;
   return out.dump(2) + "\n";
 }
@@ -144,6 +159,9 @@ Result<DealerChoices> parse_choices(const std::string& text, const std::string& 
   reader.take(motion_key, out.reduced_motion);
   reader.take(brightness_key, out.brightness, least_brightness, most_brightness);
   reader.take(calibration_key, out.calibration);
+  reader.take(pin_wrong_key, out.pin.wrong, 0, pin_attempts - 1);
+  reader.take(pin_lock_key, out.pin.lock_s, 0.0, longest_lock_s);
+  reader.take(pin_until_key, out.pin.locked_until_s, 0.0, most_wall_s);
   if (reader.wrong()) return fail(file, *reader.wrong(), "is not a value it can have", discard_remedy);
   return out;
 }

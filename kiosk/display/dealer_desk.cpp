@@ -91,6 +91,10 @@ void DealerDesk::touch_cross(Point panel, Rotation rotation, const ui::Surface& 
 std::optional<DealerChoices> DealerDesk::take_choices() {
   if (!changed_) return std::nullopt;
   changed_ = false;
+  return choices();
+}
+
+DealerChoices DealerDesk::choices() const {
   DealerChoices choices;
   choices.language = language_;
   choices.beyond_allowed = model_.beyond_allowed;

@@ -38,6 +38,8 @@ class DealerDesk {
   /// A touch at the cross that is shown: `panel` as the panel reported it.
   void touch_cross(Point panel, Rotation rotation, const ui::Surface& surface);
 
+  /// As they are.
+  [[nodiscard]] DealerChoices choices() const;
   /// What has changed since the last call.
   [[nodiscard]] std::optional<DealerChoices> take_choices();
 

@@ -35,6 +35,13 @@ ExperienceSettings bounded(ExperienceSettings settings) {
 
 }  // namespace
 
+std::optional<DealerChoices> Experience::take_choices() {
+  auto choices = dealer_.take_choices();
+  if (pin_.take_changed() && !choices) choices = dealer_.choices();
+  if (choices) choices->pin = pin_.record(now_ms_, wall_s());
+  return choices;
+}
+
 bool NightHours::covers(int minute) const {
   if (from == to) return false;
   return from < to ? minute >= from && minute < to : minute >= from || minute < to;
@@ -88,6 +95,7 @@ void Experience::set_content(ui::Content content, std::vector<packs::Camera> cam
   state_ = State(static_cast<int>(content_.paints.size()), std::move(cameras), room);
   state_.apply({input::ControlKind::light, {static_cast<double>(light)}, {}, 0, 0});
   state_.apply({input::ControlKind::dimmer, {dimmer}, {}, 0, 0});
+  light_fade_.reset();
   desk_ = MixDesk(content_);
   desk_.set_reduced_motion(reduced_motion());
   let_go();
@@ -106,7 +114,10 @@ void Experience::set_content(ui::Content content, std::vector<packs::Camera> cam
 double Experience::tick(double now_ms) {
   // A clock that stands or goes back is a fault outside; time here only goes on.
   if (std::isfinite(now_ms) && (!began_ || now_ms > now_ms_)) {
-    if (!began_) input_ms_ = dragged_ms_ = now_ms;
+    if (!began_) {
+      input_ms_ = dragged_ms_ = now_ms;
+      pin_.restore(settings_.pin, now_ms, wall_s());
+    }
     began_ = true;
     now_ms_ = now_ms;
   }
@@ -114,20 +125,37 @@ double Experience::tick(double now_ms) {
 }
 
 Experience::Before Experience::before() const {
-  return {state_.weights(), state_.camera(), state_.light(), state_.dimmer(), model_};
+  return {state_.weights(), state_.camera(), state_.light(), state_.light_shares(), state_.dimmer(), model_};
 }
 
 Experience::Changes Experience::finish(const Before& before, double now_ms) {
   state_.set_weights(desk_.weights(now_ms));
+  fade_light(before, now_ms);
   Changes changes;
   changes.weights = before.weights != state_.weights();
-  changes.view =
-      !same_view(before.camera, state_.camera()) || before.light != state_.light() || before.dimmer != state_.dimmer();
+  changes.view = !same_view(before.camera, state_.camera()) || before.light != state_.light() ||
+                 before.shares != state_.light_shares() || before.dimmer != state_.dimmer();
   words_stale_ |= changes.weights;
   find_words(now_ms);
   show_model(now_ms);
   changes.interface = before.model != model_;
   return changes;
+}
+
+/// A mood that has just been chosen comes in from whatever light there was.
+void Experience::fade_light(const Before& before, double now_ms) {
+  if (before.light != state_.light()) light_fade_ = LightFade{before.shares, now_ms};
+  if (!light_fade_) return;
+  const double part = reduced_motion() || model_.asleep ? 1.0 : eased((now_ms - light_fade_->since_ms) / light_fade_ms);
+  const LightShares to = light_alone(state_.light());
+  if (part >= 1.0) {
+    state_.set_light_shares(to);
+    light_fade_.reset();
+    return;
+  }
+  LightShares shares{};
+  for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::lerp(light_fade_->from[k], to[k], part);
+  state_.set_light_shares(shares);
 }
 
 bool Experience::beyond_shown() const {
@@ -239,7 +267,8 @@ void Experience::reset_all(double now_ms) {
   mood_detents_ = 0.0;
   ui::Model fresh;
   fresh.language = dealer_.language();
-  model_ = fresh;
+  fresh.toast = std::move(model_.toast);
+  model_ = std::move(fresh);
   desk_.show(model_, now_ms);
   touring_ = false;
   words_stale_ = true;
@@ -292,7 +321,9 @@ void Experience::advance_visit(double now_ms) {
   if (model_.screen == ui::Screen::attract) return;
   const double shows_ms = input_ms_ + 1e3 * settings_.idle_s, ends_ms = shows_ms + 1e3 * settings_.countdown_s;
   if (now_ms >= ends_ms) return reset_all(now_ms);
-  if (now_ms >= shows_ms) model_.countdown_s = std::ceil((ends_ms - now_ms) / 1e3);
+  if (now_ms < shows_ms) return;
+  model_.countdown_s = std::ceil((ends_ms - now_ms) / 1e3);
+  model_.countdown_whole_s = settings_.countdown_s;
 }
 
 void Experience::advance_tour(double now_ms) {
@@ -332,6 +363,21 @@ void Experience::advance_camera(double now_ms) {
                     between(ease_->from.closeness, ease_->to.closeness)});
 }
 
+Experience::Changes Experience::tell(ui::Toast toast, double now_ms) {
+  const double now = tick(now_ms);
+  const Before was = before();
+  model_.toast = std::move(toast);
+  toast_since_ms_ = now;
+  return finish(was, now);
+}
+
+void Experience::advance_toast(double now_ms) {
+  if (!model_.toast) return;
+  // What came by night is for whoever wakes the panel.
+  if (model_.asleep) toast_since_ms_ = now_ms;
+  if (now_ms >= toast_since_ms_ + toast_ms) model_.toast.reset();
+}
+
 Experience::Changes Experience::advance(double now_ms, int minute_of_day) {
   const double now = tick(now_ms);
   const Before was = before();
@@ -344,6 +390,7 @@ Experience::Changes Experience::advance(double now_ms, int minute_of_day) {
   // Whoever is here is not put to sleep.
   model_.asleep = model_.screen == ui::Screen::attract && settings_.night.covers(minute_);
   advance_tour(now);
+  advance_toast(now);
   return finish(was, now);
 }
 
@@ -361,8 +408,9 @@ double Experience::wake_at_ms(double now_ms) const {
     const bool shown = model_.screen == ui::Screen::show || model_.screen == ui::Screen::take_home;
     if (words_stale_ && shown && (links_.mix_name || model_.nearest)) at(words_ms_ + words_every_ms);
   }
+  if (model_.toast && !model_.asleep) at(toast_since_ms_ + toast_ms);
   // As of the last call: whoever asks late has not shown the end of a movement yet.
-  if (coasting_ || ease_ || swatch_lags_ || desk_.moves(now_ms_)) return now;
+  if (coasting_ || ease_ || light_fade_ || swatch_lags_ || desk_.moves(now_ms_)) return now;
   if (corners_held_) at(corners_since_ms_ + corners_ms);
   for (const auto& [knob, press] : presses_)
     if (!press.spent) at(press.since_ms + long_press_ms);

@@ -38,6 +38,8 @@ struct ExperienceLinks {
   /// Name of a mix in a language, and its code (packs/mix_code.hpp).
   std::function<std::string(const core::Weights&, ui::Language)> mix_name;
   std::function<std::string(const core::Weights&)> mix_code;
+  /// Seconds since 1970: PIN locks outlast a restart by it.
+  std::function<double()> wall_s;
 };
 
 /// A finger that rests this long on a swatch takes hold of it.
@@ -55,6 +57,10 @@ inline constexpr double detents_a_slider = 24.0, detents_a_mood = 2.0;
 /// The dealer's gesture: two fingers this long in both upper corners, each within this of both edges: once and a half
 /// the least touch target.
 inline constexpr double corners_ms = 3000.0, corner_mm = 1.5 * ui::least_touch_mm;
+/// From one mood of the light to the next.
+inline constexpr double light_fade_ms = 400.0;
+/// How long a notice stays.
+inline constexpr double toast_ms = 6000.0;
 /// Names and differences of a mix that changes are worked out anew this often.
 inline constexpr double words_every_ms = 100.0;
 
@@ -86,6 +92,8 @@ class Experience {
 
   /// One event. Scripted controls (weights, orbit, camera, ...) act at once and count as a visitor's.
   Changes take(const input::Control& event, double now_ms);
+  /// A notice for whoever is here; one after another, the newest shows. It is no input: nobody is woken or kept.
+  Changes tell(ui::Toast toast, double now_ms);
   /// What has come to pass by time alone. `minute_of_day`: local time, [0, 1439].
   Changes advance(double now_ms, int minute_of_day);
   /// When advance() wants to be called; now_ms while something moves by itself, input::never_ms if never.
@@ -96,7 +104,7 @@ class Experience {
   [[nodiscard]] const ui::Content& content() const { return content_; }
   [[nodiscard]] const ui::Surface& surface() const { return surface_; }
   /// What the dealer has changed since the last call, to be kept; nothing most of the time.
-  [[nodiscard]] std::optional<DealerChoices> take_choices() { return dealer_.take_choices(); }
+  [[nodiscard]] std::optional<DealerChoices> take_choices();
 
  private:
   /// A finger that is down belongs to what it went down on.
@@ -128,8 +136,13 @@ class Experience {
     core::Weights weights;
     packs::Camera camera;
     int light;
+    LightShares shares;
     double dimmer;
     ui::Model model;
+  };
+  struct LightFade {
+    LightShares from;
+    double since_ms = 0.0;
   };
   using Focus = std::pair<ui::Widget, int>;
 
@@ -139,6 +152,7 @@ class Experience {
   Changes finish(const Before& before, double now_ms);
   void show_model(double now_ms);
   void find_words(double now_ms);
+  void fade_light(const Before& before, double now_ms);
   void make_tour();
   void note_input(double now_ms);
   void begin_visit(double now_ms);
@@ -153,7 +167,9 @@ class Experience {
   void advance_visit(double now_ms);
   void advance_tour(double now_ms);
   void advance_camera(double now_ms);
+  void advance_toast(double now_ms);
   void take_script(const input::Control& event, double now_ms);
+  [[nodiscard]] double wall_s() const { return links_.wall_s ? links_.wall_s() : 0.0; }
   [[nodiscard]] bool reduced_motion() const { return dealer_.model().reduced_motion; }
   [[nodiscard]] bool beyond_shown() const;
 
@@ -212,8 +228,10 @@ class Experience {
   CarFingers car_;
   std::optional<Coasting> coasting_;
   std::optional<Ease> ease_;
+  std::optional<LightFade> light_fade_;
   double corners_since_ms_ = 0.0;
   double dragged_ms_ = 0.0;  ///< when swatches were last moved on
+  double toast_since_ms_ = 0.0;
 
   std::map<std::string, Press> presses_;
   double mood_detents_ = 0.0;

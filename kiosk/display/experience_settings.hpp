@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,14 @@ struct NightHours {
   bool operator==(const NightHours&) const = default;
 };
 
+/// How far somebody has got with guessing the PIN, as it is kept over a restart.
+struct PinRecord {
+  int wrong = 0;                ///< attempts since the last lock or right one, [0, 4]
+  double lock_s = 0.0;          ///< of the last lock, [0, 3600]; 0: there was none since the right one
+  double locked_until_s = 0.0;  ///< seconds since 1970 by the wall clock
+  bool operator==(const PinRecord&) const = default;
+};
+
 struct ExperienceSettings {
   double idle_s = 60.0;       ///< without a touch or turn until the countdown shows, [5, 3600]
   double countdown_s = 15.0;  ///< of the countdown, then everything is reset, [3, 60]
@@ -33,6 +42,7 @@ struct ExperienceSettings {
   std::uint64_t seed = 1;       ///< of the attract tour
   /// What the touch screens' reports go through today: a new calibration comes after it.
   std::optional<input::CalibrationMatrix> calibration{};
+  PinRecord pin{};  ///< as it was when the kiosk last ran
 };
 
 /// What the dealer has changed and the kiosk should keep.
@@ -41,7 +51,8 @@ struct DealerChoices {
   bool beyond_allowed = false;
   bool reduced_motion = false;
   double brightness = 1.0;
-  std::optional<input::CalibrationMatrix> calibration;  ///< for all touch screens, after a calibration
+  std::optional<input::CalibrationMatrix> calibration{};  ///< for all touch screens, after a calibration
+  PinRecord pin{};                                        ///< not chosen, but kept in the same place
 };
 
 /// The [interface] table of kiosk.toml.
@@ -52,6 +63,7 @@ struct InterfaceSettings {
   ExperienceSettings experience{};
   std::string pin;                  ///< what `lackwerk-kiosk --hash-pin` printed; empty: no dealer's screen
   int drift_px = 0;                 ///< the picture wanders by up to this much, against burn-in, [0, 24]
+  std::function<double()> wall_s;   ///< seconds since 1970; empty: the machine's
   double attract_brightness = 1.0;  ///< of the attract screen, [0.2, 1]: a dimmed panel lives longer
 };
 

@@ -49,6 +49,19 @@ class FileReader final : public Reader {
   std::uint64_t size_;
 };
 
+/// Equal but for the case of A to Z: sticks are written by systems that do not tell it apart.
+bool same_name(std::string_view one, std::string_view other) {
+  const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [&](char a, char b) { return small(a) == small(b); });
+}
+
+bool is_pack_name(std::string_view name) {
+  // Others put their own beside it: "._summer.lwp" and the like.
+  return !name.starts_with('.') && name.size() > pack_ending.size() &&
+         same_name(name.substr(name.size() - pack_ending.size()), pack_ending);
+}
+
 /// An open folder; what is opened in it is not followed anywhere else.
 class Folder {
  public:
@@ -56,8 +69,9 @@ class Folder {
     if (!folder_) ::close(fd);
   }
 
-  /// Names that end in .lwp, sorted. Error: of the disk, or too many entries to look through.
-  [[nodiscard]] Result<std::vector<std::string>> packs() const {
+  /// The names that `wanted` is true for, sorted. Error: of the disk, or too many entries to look through.
+  template <class Wanted>
+  [[nodiscard]] Result<std::vector<std::string>> names(Wanted wanted) const {
     const auto unreadable = [] { return fail(stick_folder, "", std::strerror(errno), "check the stick"); };
     if (!folder_) return unreadable();
     std::vector<std::string> names;
@@ -68,12 +82,16 @@ class Folder {
       if (entry == nullptr) break;
       if (entries == packs::max_folder_entries)
         return fail(stick_folder, "", "more than " + std::to_string(entries) + " files", "leave only packs in it");
-      const std::string_view name = entry->d_name;
-      // Others put their own beside it: "._summer.lwp" and the like.
-      if (!name.starts_with('.') && name.ends_with(pack_ending)) names.emplace_back(name);
+      if (wanted(std::string_view(entry->d_name))) names.emplace_back(entry->d_name);
     }
     std::sort(names.begin(), names.end());
     return names;
+  }
+
+  /// A folder in this one, not through a link; -1 and errno: it cannot be opened.
+  [[nodiscard]] int open_folder(const std::string& name) const {
+    if (!folder_) return -1;
+    return ::openat(::dirfd(folder_.get()), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   }
 
   /// A regular file of at most `most` bytes. A link, a pipe or a device of that name is refused and not touched.
@@ -100,16 +118,21 @@ class Folder {
   std::unique_ptr<DIR, int (*)(DIR*)> folder_;
 };
 
-/// The stick's one folder, not through a link.
+/// The stick's one folder, not through a link, however its name is spelled.
 Result<Folder> open_stick(const std::filesystem::path& stick) {
-  const int root = ::open(stick.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  const int root = ::open(stick.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (root < 0) return fail(stick.string(), "", std::strerror(errno), "is the stick mounted?");
-  const int fd = ::openat(root, stick_folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  const int why = errno;
-  ::close(root);
-  if (fd < 0 && why == ENOENT)
-    return fail(stick_folder, "", "no such folder on the stick", "put the packs into a folder of this name");
-  if (fd < 0) return fail(stick_folder, "", std::strerror(why), "make it a folder of its own");
+  const Folder top(root);
+  int fd = top.open_folder(stick_folder);
+  if (fd < 0 && errno == ENOENT) {
+    // FAT finds LACKWERK by this name too; a file system that tells case apart does not.
+    const auto spelled = top.names([](std::string_view name) { return same_name(name, stick_folder); });
+    if (spelled && spelled->empty())
+      return fail(stick_folder, "", "no such folder on the stick", "put the packs into a folder of this name");
+    if (!spelled) return tl::unexpected(spelled.error());
+    fd = top.open_folder(spelled->front());
+  }
+  if (fd < 0) return fail(stick_folder, "", std::strerror(errno), "make it a folder of its own");
   return Folder(fd);
 }
 
@@ -167,7 +190,7 @@ ImportReport import_folder(const std::filesystem::path& stick, packs::Store& sto
   };
   const auto folder = open_stick(stick);
   if (!folder) return stop(folder.error());
-  auto names = folder->packs();
+  auto names = folder->names(is_pack_name);
   if (!names) return stop(names.error());
   if (names->empty()) return stop({stick_folder, "", "no packs (*.lwp) in it", "copy packs and signatures there"});
   if (names->size() > limits.most_packs) {

@@ -17,7 +17,7 @@
 
 namespace lackwerk::kiosk {
 
-/// The one folder of a stick that is looked at.
+/// The one folder of a stick that is looked at; in capitals too, as some systems write short names.
 inline constexpr const char* stick_folder = "lackwerk";
 inline constexpr const char* import_file_name = "import.json";
 
@@ -44,8 +44,8 @@ struct ImportReport {
   [[nodiscard]] bool is_good() const;
 };
 
-/// Every NAME.lwp of `stick`/lackwerk that is a regular file with a regular NAME.lwp.minisig beside it goes through
-/// Store::add, by name; all others of that name are refused with a reason. `stick`: where it is mounted.
+/// Every NAME.lwp (or .LWP) of `stick`/lackwerk that is a regular file with a regular NAME.lwp.minisig beside it goes
+/// through Store::add, by name; all others of that name are refused with a reason. `stick`: where it is mounted.
 [[nodiscard]] ImportReport import_folder(const std::filesystem::path& stick, packs::Store& store,
                                          const packs::Keyring& keyring, const ImportLimits& limits);
 

@@ -1,6 +1,7 @@
 #include "kiosk/display/interface.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "input/source.hpp"
@@ -36,18 +37,28 @@ ui::Content content_of(const packs::PaintPack& pack, bool vouched) {
   return content;
 }
 
+ExperienceLinks links_of(const packs::PaintPack& pack, const InterfaceSettings& settings) {
+  ExperienceLinks links = links_to(pack, settings.pin);
+  links.wall_s = settings.wall_s ? settings.wall_s : wall_clock_s;
+  return links;
+}
+
 gles::OverlaySprite overlay_sprite(const ui::Sprite& from) {
   return {from.tile, from.x_px, from.y_px, from.width_px, from.height_px, from.opacity};
 }
 
 }  // namespace
 
+double wall_clock_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 Interface::Interface(Stage& stage, const InterfaceSettings& settings, Log& log)
     : stage_(stage),
       settings_(settings),
       log_(log),
       experience_(content_of(stage.pack(), settings.vouched), stage.scene().cameras, settings.experience,
-                  links_to(stage.pack(), settings.pin), room_of(stage.scene())),
+                  links_of(stage.pack(), settings), room_of(stage.scene())),
       drift_(settings.drift_px) {}
 
 Result<std::unique_ptr<Interface>> Interface::create(Stage& stage, const InterfaceSettings& settings, Log& log) {
@@ -72,9 +83,10 @@ Result<void> Interface::set_up() {
   return {};
 }
 
-void Interface::set_surface(Rotation rotation, std::array<int, 2> panel_px) {
+void Interface::set_surface(Rotation rotation, std::array<int, 2> panel_px, double panel_dpi) {
   rotation_ = rotation;
-  experience_.set_surface(rotation, panel_px, settings_.dpi > 0.0 ? settings_.dpi : usual_dpi);
+  const double known_dpi = settings_.dpi > 0.0 ? settings_.dpi : panel_dpi;
+  experience_.set_surface(rotation, panel_px, known_dpi > 0.0 ? known_dpi : usual_dpi);
   script_fingers_.clear();
   painted_ = false;
   size_swatches();
@@ -96,7 +108,7 @@ void Interface::content_changed(double now_ms, bool vouched) {
     else
       log_.error(held.error());
   }
-  experience_.set_links(links_to(stage_.pack(), settings_.pin));
+  experience_.set_links(links_of(stage_.pack(), settings_));
   experience_.set_content(content_of(stage_.pack(), vouched), stage_.scene().cameras, room_of(stage_.scene()));
   painted_ = false;
   if (!painter_) return;
@@ -171,6 +183,14 @@ Interface::Changes Interface::begin_visit(double now_ms) {
   return take({ControlKind::orbit, {0.0, 0.0}, {}, 0, 0}, now_ms);
 }
 
+Interface::Changes Interface::tell(ui::Toast toast, double now_ms) {
+  const Changes changes = experience_.tell(std::move(toast), now_ms);
+  note(changes);
+  // The dealer's page has news too.
+  facts_ms_ = -1e300;
+  return changes;
+}
+
 Interface::Changes Interface::advance(double now_ms, int minute_of_day) {
   const Changes changes = experience_.advance(now_ms, minute_of_day);
   note(changes);
@@ -218,13 +238,18 @@ bool Interface::compare(bool current) {
   return true;
 }
 
+float Interface::brightness() const {
+  if (!painter_ || model().dealer.test_pattern) return 1.0f;
+  return static_cast<float>(model().dealer.brightness *
+                            (model().screen == ui::Screen::attract ? settings_.attract_brightness : 1.0));
+}
+
 gles::OverlayLook Interface::look() const {
   gles::OverlayLook look;
   const auto drift = drift_.at();
   look.drift_x_px = drift[0];
   look.drift_y_px = drift[1];
-  look.brightness = static_cast<float>(model().dealer.brightness *
-                                       (model().screen == ui::Screen::attract ? settings_.attract_brightness : 1.0));
+  look.brightness = brightness();
   if (compared_) look.split = middle;
   if (fading_since_ms_ && !compared_) {
     // Eased at both ends: smoothstep.
@@ -287,7 +312,7 @@ Result<const gles::Framebuffer*> Interface::pattern(const gles::Framebuffer& pic
   return &*pattern_;
 }
 
-Result<const gles::Framebuffer*> Interface::compose(const gles::Framebuffer& picture) {
+Result<const gles::Framebuffer*> Interface::compose(const gles::Framebuffer& picture, Dimming dimming) {
   if (!painter_) return &picture;
   pattern_shown_ = model().dealer.test_pattern;
   if (!pattern_shown_) pattern_.reset();
@@ -295,7 +320,9 @@ Result<const gles::Framebuffer*> Interface::compose(const gles::Framebuffer& pic
   dirty_ = false;
   composed_ = look();
   if (pattern_shown_) return pattern(picture);
-  return overlay_->compose(picture, sprites_, composed_);
+  gles::OverlayLook drawn = composed_;
+  if (dimming == Dimming::later) drawn.brightness = 1.0f;
+  return overlay_->compose(picture, sprites_, drawn);
 }
 
 void Interface::make_swatch() {

@@ -25,6 +25,9 @@
 
 namespace lackwerk::kiosk {
 
+/// Seconds since 1970 by the machine's clock.
+[[nodiscard]] double wall_clock_s();
+
 class Interface {
  public:
   using Changes = Experience::Changes;
@@ -34,8 +37,9 @@ class Interface {
   [[nodiscard]] static Result<std::unique_ptr<Interface>> create(Stage& stage, const InterfaceSettings& settings,
                                                                  Log& log);
 
-  /// Another mode or mounting; at the stage's framebuffer's size once rotated. `panel_px` as the panel is built.
-  void set_surface(Rotation rotation, std::array<int, 2> panel_px);
+  /// Another mode or mounting; at the stage's framebuffer's size once rotated. `panel_px` as the panel is built;
+  /// `panel_dpi`: what it says of its density (panel_size.hpp), which the settings' counts over; 0: nothing.
+  void set_surface(Rotation rotation, std::array<int, 2> panel_px, double panel_dpi = 0.0);
   /// The stage shows another pack or scene; `vouched`: ui::Content::is_vouched. The picture that was shown fades into
   /// the next ones.
   void content_changed(double now_ms, bool vouched);
@@ -47,6 +51,9 @@ class Interface {
   Changes advance(double now_ms, int minute_of_day);
   /// When advance() wants to be called; input::never_ms if never.
   [[nodiscard]] double wake_at_ms(double now_ms) const;
+
+  /// A notice for some seconds: Experience::tell().
+  Changes tell(ui::Toast toast, double now_ms);
 
   /// A visit begins, as if somebody had touched the screen without doing anything.
   Changes begin_visit(double now_ms);
@@ -60,8 +67,17 @@ class Interface {
 
   /// compose() would give another picture than the last time, although the picture below is the same.
   [[nodiscard]] bool stale() const;
+  /// Who makes the picture as dark as brightness() says.
+  enum class Dimming {
+    here,   ///< compose(), with a pass over all pixels
+    later,  ///< the output, in the pass it needs anyway (Output::set_brightness)
+  };
+  /// The dealer's brightness and the attract screen's as one factor on display values, [0, 1]; 1 under the test
+  /// pattern.
+  [[nodiscard]] float brightness() const;
   /// The picture with the interface on it; the picture itself where nothing is on it. Valid until the next call.
-  [[nodiscard]] Result<const gles::Framebuffer*> compose(const gles::Framebuffer& picture);
+  [[nodiscard]] Result<const gles::Framebuffer*> compose(const gles::Framebuffer& picture,
+                                                         Dimming dimming = Dimming::here);
 
   /// The dealer's screen is open and has not had news for a while (or never): show() them.
   [[nodiscard]] bool wants_facts(double now_ms) const;

@@ -7,6 +7,7 @@
 #include "core/colour.hpp"
 #include "kiosk/display/choices.hpp"
 #include "kiosk/display/interface_words.hpp"
+#include "kiosk/display/panel_size.hpp"
 #include "kiosk/display/targets.hpp"
 #include "render_gles/context.hpp"
 
@@ -46,8 +47,10 @@ Live::Live(Output& output, Stage& stage, Picture& picture, Interface& interface,
       log_(log),
       service_(service),
       settings_(std::move(settings)),
-      started_ms_(monotonic_ms()) {
+      started_ms_(monotonic_ms()),
+      imports_(settings_.status_folder) {
   if (!settings_.minute_of_day) settings_.minute_of_day = local_minute;
+  if (!settings_.wall_s) settings_.wall_s = wall_clock_s;
 }
 
 void Live::apply(const Interface::Changes& changes, std::uint64_t time_us) {
@@ -83,7 +86,7 @@ void Live::take_input(double now_ms) {
   keep_choices();
   sleep_or_wake();
   if (interface_.wants_facts(now_ms)) {
-    ui::DealerFacts facts{status(), {}};
+    ui::DealerFacts facts{status(), {}, imports_.last()};
     for (auto entry = facts.status.problems.rbegin(); entry != facts.status.problems.rend(); ++entry)
       facts.log.push_back(entry->text);
     interface_.show_facts(std::move(facts), now_ms);
@@ -143,6 +146,16 @@ void Live::take_pack(double now_ms) {
               (next.is_signed ? "" : ", which is not signed"));
 }
 
+void Live::take_import(double now_ms) {
+  const auto news = imports_.poll(now_ms, settings_.wall_s());
+  if (!news) {
+    log_.error(news.error());
+    report_due_ = true;
+    return;
+  }
+  if (*news) apply(interface_.tell(toast_of(**news), now_ms), 0);
+}
+
 Result<void> Live::fit_output() {
   if (fitted_ && output_revision_ == output_.revision()) return {};
   output_revision_ = output_.revision();
@@ -166,7 +179,11 @@ Result<void> Live::fit_output() {
     if (auto sized = stage_.resize(size[0], size[1]); !sized) return sized;
     picture_.lost();
   }
-  interface_.set_surface(mode.rotation, mode.panel_px);
+  const double dpi = panel_dpi(mode.panel_px, mode.panel_mm);
+  if (mode.panel_mm[0] > 0 && mode.panel_mm[1] > 0)
+    log_.info("the panel says " + std::to_string(mode.panel_mm[0]) + " x " + std::to_string(mode.panel_mm[1]) +
+              " mm: " + (dpi > 0.0 ? std::to_string(std::lround(dpi)) + " dpi" : "not believed"));
+  interface_.set_surface(mode.rotation, mode.panel_px, dpi);
   fitted_ = true;
   return {};
 }
@@ -195,7 +212,9 @@ Result<void> Live::show() {
   weights_changed_ = false;
   damaged_ |= *drawn != Picture::Step::nothing || interface_.stale();
   if (!damaged_) return {};
-  const auto composed = interface_.compose(stage_.framebuffer());
+  const bool dimmed = output_.set_brightness(interface_.brightness());
+  const auto composed =
+      interface_.compose(stage_.framebuffer(), dimmed ? Interface::Dimming::later : Interface::Dimming::here);
   if (!composed) return tl::unexpected(composed.error());
   const auto presented = output_.present(**composed);
   if (!presented) return tl::unexpected(presented.error());
@@ -241,6 +260,7 @@ Result<void> Live::step(double now_ms) {
   if (auto dispatched = output_.dispatch(now_ms); !dispatched) return dispatched;
   stepped_ms_ = now_ms;
   take_pack(now_ms);
+  take_import(now_ms);
   take_input(now_ms);
   if (auto fitted = fit_output(); !fitted) return fitted;
   if (auto shown = show(); !shown) return shown;
@@ -301,6 +321,7 @@ void Live::stop() {
 void Live::add_descriptors(std::vector<int>& out) const {
   output_.add_descriptors(out);
   if (settings_.packs != nullptr && settings_.packs->fd() >= 0) out.push_back(settings_.packs->fd());
+  if (imports_.fd() >= 0) out.push_back(imports_.fd());
   for (const auto& source : devices_.sources) source->add_descriptors(out);
 }
 

@@ -16,6 +16,7 @@
 #include "input/script.hpp"
 #include "input/source.hpp"
 #include "kiosk/display/devices.hpp"
+#include "kiosk/display/import_notice.hpp"
 #include "kiosk/display/interface.hpp"
 #include "kiosk/display/latency.hpp"
 #include "kiosk/display/log.hpp"
@@ -28,7 +29,7 @@
 namespace lackwerk::kiosk {
 
 struct LiveSettings {
-  std::string status_folder;    ///< empty: no status.json
+  std::string status_folder;    ///< of status.json, and of the importer's reports; empty: neither
   std::string pack_file;        ///< for the status
   bool pack_signed = false;     ///< by a key of the keyring
   PackSource* packs = nullptr;  ///< tells of another pack; null: there is never another one. Outlives the kiosk
@@ -36,6 +37,7 @@ struct LiveSettings {
   DisplayProfile profile{};              ///< of the panel: what it cannot show is said
   std::filesystem::path choices_folder;  ///< keeps what the dealer changes; empty: it is forgotten
   std::function<int()> minute_of_day;    ///< local time; empty: the machine's
+  std::function<double()> wall_s;        ///< seconds since 1970; empty: the machine's
   bool visit = false;                    ///< begins with one, as for a script that does not touch
 };
 
@@ -69,6 +71,7 @@ class Live {
   void take_script(double now_ms);
   void keep_choices();
   void take_pack(double now_ms);
+  void take_import(double now_ms);
   [[nodiscard]] Result<void> fit_output();
   [[nodiscard]] Result<void> show();
   void report(double now_ms);
@@ -103,6 +106,7 @@ class Live {
   bool damaged_ = true;          ///< the framebuffer holds what the panel does not
   double started_ms_ = 0.0, stepped_ms_ = 0.0, reported_ms_ = -1e300;
   bool report_due_ = true;
+  ImportNotice imports_;
 };
 
 }  // namespace lackwerk::kiosk

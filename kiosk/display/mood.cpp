@@ -101,10 +101,24 @@ double closeness(const packs::Camera& camera) {
 }
 
 gles::Lighting lighting_of(const packs::Camera& camera, int light, double dimmer) {
+  std::array<double, 3> shares{};
+  shares[static_cast<std::size_t>(std::clamp(light, 0, 2))] = 1.0;
+  return lighting_of(camera, shares, dimmer);
+}
+
+gles::Lighting lighting_of(const packs::Camera& camera, const std::array<double, 3>& shares, double dimmer) {
   if (usual_mood(camera.name) == Mood::stripes) return lighting_of(Mood::stripes);
   const std::array<Scheme, 3> moods = schemes();
-  const Scheme far = moods[static_cast<std::size_t>(std::clamp(light, 0, static_cast<int>(moods.size()) - 1))];
-  const Scheme lit = blend(far, near_scheme(far, light), static_cast<float>(closeness(camera)));
+  const auto near = static_cast<float>(closeness(camera));
+  // One after the other into what is there, each by its share of all so far: one alone is taken as it is.
+  Scheme lit = moods[0];
+  double so_far = 0.0;
+  for (std::size_t k = 0; k < moods.size(); ++k) {
+    if (shares[k] <= 0.0) continue;
+    const Scheme one = blend(moods[k], near_scheme(moods[k], static_cast<int>(k)), near);
+    so_far += shares[k];
+    lit = so_far == shares[k] ? one : blend(lit, one, static_cast<float>(shares[k] / so_far));
+  }
   // By night the room goes dark first, then what is pointed at the car; the car's own lamps stay.
   const auto night = static_cast<float>(std::clamp(dimmer, 0.0, 1.0));
   gles::Lighting out = studio();

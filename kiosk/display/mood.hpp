@@ -4,6 +4,7 @@
 // light. Pure functions; any thread.
 #pragma once
 
+#include <array>
 #include <string_view>
 
 #include "packs/scene.hpp"
@@ -37,5 +38,8 @@ enum class Light {
 /// a hard light comes in by itself, whatever was chosen: in soft light flakes do not sparkle. Continuous in `dimmer`
 /// and camera. By day in the studio it is the usual mood of the scene's far and macro cameras.
 [[nodiscard]] gles::Lighting lighting_of(const packs::Camera& camera, int light, double dimmer);
+/// The same between moods: `shares` of each, at least 0, sum 1. Continuous in them; one alone is that light exactly.
+[[nodiscard]] gles::Lighting lighting_of(const packs::Camera& camera, const std::array<double, 3>& shares,
+                                         double dimmer);
 
 }  // namespace lackwerk::kiosk

@@ -56,6 +56,7 @@ struct OutputMode {
   std::array<int, 2> panel_px{0, 0};  ///< as the panel is built; the picture's size is picture_size(rotation, panel_px)
   double refresh_hz = 0.0;            ///< 0: no vertical blank
   Rotation rotation = Rotation::none;
+  std::array<int, 2> panel_mm{0, 0};  ///< as the panel says, along panel_px; 0: it does not
 };
 
 enum class Presented {
@@ -97,6 +98,9 @@ class Output {
   [[nodiscard]] virtual std::uint64_t presented() const = 0;
   /// Panel off (DPMS) and on. Survives hot-plug.
   virtual void set_power(bool on) = 0;
+  /// Dims all pictures from the next one on: a factor on their display values, [0, 1], in the pass that takes them to
+  /// the panel anyway. False: this output has none; whoever composes the picture dims it.
+  [[nodiscard]] virtual bool set_brightness(float /*brightness*/) { return false; }
   /// What the present pass does from the next picture on.
   virtual void set_profile(const DisplayProfile& profile) = 0;
 

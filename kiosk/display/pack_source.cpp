@@ -1,30 +1,10 @@
 #include "kiosk/display/pack_source.hpp"
 
-#include <sys/inotify.h>
-#include <unistd.h>
-
-#include <array>
-
 #include "packs/store.hpp"
 
 namespace lackwerk::kiosk {
 
 PackSource::PackSource(PackPlaces places) : places_(std::move(places)) {}
-
-PackSource::~PackSource() {
-  if (watch_ >= 0) ::close(watch_);
-}
-
-void PackSource::watch() {
-  if (watch_ >= 0) return;
-  watch_ = ::inotify_init1(IN_CLOEXEC | IN_NONBLOCK);
-  // The store switches by renaming its `state` over the old one. Where the root is not there yet, its parent is watched
-  // by nobody: a kiosk without any pack does not start, systemd starts it again.
-  if (watch_ >= 0 && ::inotify_add_watch(watch_, places_.store.c_str(), IN_MOVED_TO | IN_ONLYDIR) < 0) {
-    ::close(watch_);
-    watch_ = -1;
-  }
-}
 
 Result<ShownPack> PackSource::open_file(const std::filesystem::path& path) const {
   // A kiosk that takes unsigned packs may have no keyring at all; a signed pack then has nobody to vouch for it.
@@ -56,7 +36,10 @@ Result<std::optional<ShownPack>> PackSource::open_stored() {
 
 Result<ShownPack> PackSource::first() {
   if (!places_.files.empty()) return open_file(places_.files.front());
-  watch();  // before it is read: a change in between is seen twice, not missed
+  // Before it is read: a change in between is seen twice, not missed. The store switches by renaming its `state` over
+  // the old one. Where the root is not there yet, its parent is watched by nobody: a kiosk without any pack does not
+  // start, systemd starts it again.
+  watch_.watch(places_.store);
   auto stored = open_stored();
   if (!stored) return tl::unexpected(stored.error());
   if (!*stored)
@@ -66,12 +49,7 @@ Result<ShownPack> PackSource::first() {
 }
 
 Result<std::optional<ShownPack>> PackSource::poll() {
-  if (watch_ < 0) return std::optional<ShownPack>{};
-  // Only that something happened matters.
-  alignas(inotify_event) std::array<char, 4096> events{};
-  bool changed = false;
-  while (::read(watch_, events.data(), events.size()) > 0) changed = true;
-  if (!changed) return std::optional<ShownPack>{};
+  if (!watch_.changed()) return std::optional<ShownPack>{};
   return open_stored();
 }
 

@@ -2,7 +2,7 @@
 //
 // Why it exists: a dealer adds a pack while a visitor is at the screen. The store's folder is watched; a new pack is
 // verified and parsed before anybody hears of it, and one that fails leaves the old one running. A pack named in
-// kiosk.toml or on the command line is opened once and never changes. Owns an inotify descriptor; one thread.
+// kiosk.toml or on the command line is opened once and never changes. Owns the watch; one thread.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "kiosk/display/folder_watch.hpp"
 #include "kiosk/display/pack_places.hpp"
 #include "packs/signed_pack.hpp"
 
@@ -27,9 +28,6 @@ struct ShownPack {
 class PackSource {
  public:
   explicit PackSource(PackPlaces places);
-  ~PackSource();
-  PackSource(const PackSource&) = delete;
-  PackSource& operator=(const PackSource&) = delete;
 
   /// The pack to begin with. Errors: none named and none in the store, or it does not verify or parse.
   [[nodiscard]] Result<ShownPack> first();
@@ -39,15 +37,14 @@ class PackSource {
   [[nodiscard]] Result<std::optional<ShownPack>> poll();
 
   /// To poll for reading; -1 where nothing is watched.
-  [[nodiscard]] int fd() const { return watch_; }
+  [[nodiscard]] int fd() const { return watch_.fd(); }
 
  private:
   [[nodiscard]] Result<std::optional<ShownPack>> open_stored();
   [[nodiscard]] Result<ShownPack> open_file(const std::filesystem::path& path) const;
-  void watch();
 
   PackPlaces places_;
-  int watch_ = -1;
+  FolderWatch watch_;
   std::string shown_;  ///< folder of the version that is shown, of the store
 };
 

@@ -92,7 +92,7 @@ gles::View Picture::view(const State& state) const {
 }
 
 gles::Lighting Picture::lighting(const State& state) const {
-  gles::Lighting lighting = lighting_of(state.camera(), state.light(), state.dimmer());
+  gles::Lighting lighting = lighting_of(state.camera(), state.light_shares(), state.dimmer());
   lighting.quality = quality_;
   return lighting;
 }

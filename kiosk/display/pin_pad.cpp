@@ -29,6 +29,8 @@ bool PinPad::confirm(double now_ms, const std::function<bool(const std::string&)
   if (digits_.empty()) return false;
   const bool right = check && check(digits_);
   clear();
+  // What is as it was need not be written: a right PIN after no wrong one.
+  changed_ |= !right || wrong_ > 0 || lock_s_ > 0.0;
   if (right) {
     wrong_ = 0;
     lock_s_ = 0.0;
@@ -40,6 +42,18 @@ bool PinPad::confirm(double now_ms, const std::function<bool(const std::string&)
   lock_s_ = lock_s_ > 0.0 ? std::min(2.0 * lock_s_, longest_lock_s) : first_lock_s;
   locked_until_ms_ = now_ms + 1e3 * lock_s_;
   return false;
+}
+
+PinRecord PinPad::record(double now_ms, double wall_s) const {
+  const double left_s = std::max(locked_until_ms_ - now_ms, 0.0) / 1e3;
+  return {wrong_, lock_s_, left_s > 0.0 ? wall_s + left_s : 0.0};
+}
+
+void PinPad::restore(const PinRecord& record, double now_ms, double wall_s) {
+  const auto within = [](double value, double most) { return value > 0.0 ? std::min(value, most) : 0.0; };
+  wrong_ = std::clamp(record.wrong, 0, pin_attempts - 1);
+  lock_s_ = within(record.lock_s, longest_lock_s);
+  locked_until_ms_ = now_ms + 1e3 * within(record.locked_until_s - wall_s, lock_s_);
 }
 
 ui::PinModel PinPad::model(double now_ms) const {

@@ -6,7 +6,9 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
+#include "kiosk/display/experience_settings.hpp"
 #include "kiosk/display/ui/model.hpp"
 
 namespace lackwerk::kiosk {
@@ -27,6 +29,13 @@ class PinPad {
   [[nodiscard]] ui::PinModel model(double now_ms) const;
   /// Whole seconds until it takes attempts again; 0: now.
   [[nodiscard]] double locked_s(double now_ms) const;
+  /// What a restart must not make forgotten has changed since the last call.
+  [[nodiscard]] bool take_changed() { return std::exchange(changed_, false); }
+  /// `wall_s`: seconds since 1970.
+  [[nodiscard]] PinRecord record(double now_ms, double wall_s) const;
+  /// Goes on from a record. A lock lasts for what is left of it by the wall clock, but never longer than it was long: a
+  /// clock that has gone back locks for one whole time more, and not for years. Numbers out of range are cut.
+  void restore(const PinRecord& record, double now_ms, double wall_s);
   /// When model() changes by itself; input::never_ms if never.
   [[nodiscard]] double wake_at_ms(double now_ms) const;
 
@@ -38,6 +47,7 @@ class PinPad {
   int wrong_ = 0;        ///< since the last lock or right one
   double lock_s_ = 0.0;  ///< of the last lock
   double locked_until_ms_ = 0.0;
+  bool changed_ = false;
 };
 
 }  // namespace lackwerk::kiosk

@@ -20,6 +20,12 @@ core::Weights first_paint(int paint_count) {
   return core::Weights::uniform(w);
 }
 
+LightShares light_alone(int light) {
+  LightShares shares{};
+  shares[static_cast<std::size_t>(std::clamp(light, 0, light_moods - 1))] = 1.0;
+  return shares;
+}
+
 State::State(int paint_count, std::vector<packs::Camera> cameras, Room room)
     : paint_count_(static_cast<std::size_t>(paint_count)),
       rig_(std::move(cameras), room),
@@ -86,7 +92,15 @@ bool State::set_light(const std::vector<double>& values) {
   const int light = static_cast<int>(values[0]);
   const bool differs = light != light_;
   light_ = light;
+  light_shares_ = light_alone(light);
   return differs;
+}
+
+State::Changes State::set_light_shares(const LightShares& shares) {
+  Changes changes;
+  changes.view = shares != light_shares_;
+  light_shares_ = shares;
+  return changes;
 }
 
 State::Changes State::apply(const input::Control& event) {

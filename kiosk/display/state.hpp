@@ -3,6 +3,7 @@
 // Why it exists: behaviour is tested without GL, devices or a clock. It owns copies of the scene's cameras. One thread.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@
 namespace lackwerk::kiosk {
 
 inline constexpr int light_moods = 3;
+/// How much of each mood is in the light; they sum to 1.
+using LightShares = std::array<double, light_moods>;
+
+/// One mood and nothing else.
+[[nodiscard]] LightShares light_alone(int light);
 
 class State {
  public:
@@ -34,15 +40,18 @@ class State {
   /// The same for values that are known to be good: weights as apply() takes them, a place of rig().
   Changes set_weights(const core::Weights& weights);
   Changes set_place(const RigPlace& place);
+  /// On the way from one mood to another; apply() goes there at once.
+  Changes set_light_shares(const LightShares& shares);
   /// The first camera, at its own place.
   Changes go_home();
 
   [[nodiscard]] const core::Weights& weights() const { return weights_; }
   [[nodiscard]] const packs::Camera& camera() const { return camera_; }
   [[nodiscard]] const CameraRig& rig() const { return rig_; }
-  /// The mood of the light, [0, light_moods), and how far it is dimmed from day (0) to showroom night (1). The mood
-  /// steps; whoever draws it may fade.
+  /// The mood of the light that is chosen, [0, light_moods), and how far it is dimmed from day (0) to showroom night
+  /// (1). The mood steps; what is drawn are its shares.
   [[nodiscard]] int light() const { return light_; }
+  [[nodiscard]] const LightShares& light_shares() const { return light_shares_; }
   [[nodiscard]] double dimmer() const { return dimmer_; }
 
  private:
@@ -57,6 +66,7 @@ class State {
   core::Weights weights_;
   packs::Camera camera_;
   int light_ = 0;
+  LightShares light_shares_ = light_alone(0);
   double dimmer_ = 0.0;
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "kiosk/display/import_notice.hpp"
 #include "kiosk/display/ui/strings.hpp"
 #include "tests/unit/tile_canvas.hpp"
 
@@ -47,6 +48,23 @@ Content content_of(std::size_t paints) {
   return content;
 }
 
+ImportReport some_import() {
+  ImportReport out;
+  out.time_s = 1'762'000'000;
+  out.files.resize(3);
+  out.files[0].file = "rogue.lwp";
+  out.files[0].error =
+      "rogue.lwp: signed with key 0123456789ABCDEF, which is not in the keyring (put the maker's .pub into the "
+      "keyring)";
+  out.files[1].file = "spring-2026.lwp";
+  out.files[1].outcome = ImportedFile::Outcome::stored;
+  out.files[1].id = "lackwerk.spring-2026";
+  out.files[2].file = "winter-2025.lwp";
+  out.files[2].outcome = ImportedFile::Outcome::already_there;
+  out.files[2].id = "lackwerk.winter-2025";
+  return out;
+}
+
 DealerFacts facts() {
   DealerFacts out;
   out.status.state = "running";
@@ -64,6 +82,8 @@ DealerFacts facts() {
   out.status.latency.median_ms = 31.0;
   out.status.devices = {{"Goodix Capacitive TouchScreen", "touch", "ready", "/dev/input/event4"},
                         {"Griffin PowerMate", "knob", "gone", "/dev/hidraw0: unplugged; plug it in again"}};
+  out.status.devices[0].heard = 127;
+  out.import = some_import();
   out.log = {"2 min: /dev/hidraw0: unplugged (plug it in again)",
              "1 h: kiosk.toml: interface.dpi: the panel says nothing about its size, 96 is taken (set interface.dpi)"};
   return out;
@@ -93,6 +113,17 @@ Model show_model(Language language, std::size_t paints) {
   model.mix_name = mix_of(language);
   model.mix_code = "LW1:7F3K2M9Q/4/720-280-0/500-500-0/1000-0-0:8C2F";
   return model;
+}
+
+std::vector<std::pair<std::string, Toast>> toasts() {
+  ImportReport report = some_import();
+  std::vector<std::pair<std::string, Toast>> out;
+  out.emplace_back("mixed", toast_of(report));
+  report.files.resize(1);
+  out.emplace_back("refused", toast_of(report));
+  report.files = {some_import().files[1]};
+  out.emplace_back("good", toast_of(report));
+  return out;
 }
 
 std::vector<Shot> visitor_shots(Language language) {
@@ -127,6 +158,15 @@ std::vector<Shot> visitor_shots(Language language) {
   model = show_model(language, 3);
   model.countdown_s = 9.0;
   shots.push_back({"show-countdown", model});
+  for (const auto& [name, toast] : toasts()) {
+    model = show_model(language, 3);
+    model.toast = toast;
+    shots.push_back({"toast-" + name, model});
+    model.screen = Screen::attract;
+    shots.push_back({"toast-" + name + "-attract", model});
+    model.screen = Screen::dealer;
+    shots.push_back({"toast-" + name + "-dealer", model});
+  }
   for (const std::size_t paints : {1U, 2U, 4U, 5U}) {
     model = show_model(language, paints);
     model.beyond_shown = paints > 3;

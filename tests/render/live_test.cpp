@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/render/kiosk_stage.hpp"
+#include "tests/render/live_twins.hpp"
 #include "tests/render/support.hpp"
 
 namespace lackwerk::test {
@@ -18,90 +19,6 @@ namespace {
 using input::Control;
 using input::ControlKind;
 using kiosk::OutputState;
-using kiosk::Presented;
-
-/// A panel whose flips come when the test says so.
-class Panel final : public kiosk::Output {
- public:
-  explicit Panel(gles::Context& context) : context_(context) { mode_.panel_px = {96, 54}; }
-
-  [[nodiscard]] kiosk::Platform platform() const override { return kiosk::Platform::kms; }
-  [[nodiscard]] gles::Context& context() override { return context_; }
-  [[nodiscard]] OutputState state() const override { return state_; }
-  [[nodiscard]] const kiosk::OutputMode& mode() const override { return mode_; }
-  [[nodiscard]] std::uint64_t revision() const override { return revision_; }
-  [[nodiscard]] bool ready() const override { return state_ == OutputState::running && !pending_; }
-  [[nodiscard]] Result<Presented> present(const gles::Framebuffer& picture) override {
-    if (lost_) return fail("/dev/dri/card9", "", "device lost", "restart");
-    if (busy_ > 0) {
-      --busy_;
-      return Presented::refused;
-    }
-    size_px = {picture.width(), picture.height()};
-    pending_ = true;
-    ++taken;
-    return Presented::queued;
-  }
-  void add_descriptors(std::vector<int>& /*out*/) const override {}
-  [[nodiscard]] Result<void> dispatch(double /*now_ms*/) override { return {}; }
-  [[nodiscard]] double wake_at_ms() const override { return input::never_ms; }
-  [[nodiscard]] std::uint64_t flipped_at_us() const override { return flipped_us_; }
-  [[nodiscard]] std::uint64_t presented() const override { return taken; }
-  void set_power(bool on) override { powered = on; }
-  void set_profile(const kiosk::DisplayProfile& /*profile*/) override {}
-
-  void flip(std::uint64_t at_us) {
-    pending_ = false;
-    flipped_us_ = at_us;
-  }
-  void plug(std::array<int, 2> panel_px, kiosk::Rotation rotation = kiosk::Rotation::none) {
-    mode_.panel_px = panel_px;
-    mode_.rotation = rotation;
-    set(OutputState::running);
-  }
-  void unplug() { set(OutputState::waiting_for_display); }
-  void refuse(int times) { busy_ = times; }
-  void lose() { lost_ = true; }
-
-  std::uint64_t taken = 0;
-  std::array<int, 2> size_px{};
-  bool powered = true;
-
- private:
-  void set(OutputState state) {
-    state_ = state;
-    pending_ = false;
-    ++revision_;
-  }
-  gles::Context& context_;
-  OutputState state_ = OutputState::running;
-  kiosk::OutputMode mode_;
-  std::uint64_t revision_ = 1, flipped_us_ = 0;
-  bool pending_ = false, lost_ = false;
-  int busy_ = 0;
-};
-
-/// What the test wants to be turned and touched.
-struct Hand {
-  std::vector<Control> next;
-};
-class HandSource final : public input::Source {
- public:
-  explicit HandSource(Hand& hand) : hand_(hand) {}
-  void add_descriptors(std::vector<int>& /*out*/) const override {}
-  void read(double /*now_ms*/, std::vector<Control>& out) override {
-    out.insert(out.end(), hand_.next.begin(), hand_.next.end());
-    hand_.next.clear();
-  }
-  [[nodiscard]] double wake_at_ms() const override { return input::never_ms; }
-  void add_devices(std::vector<input::DeviceStatus>& out) const override {
-    out.push_back({"hand", "knob", "ready", ""});
-  }
-  void take_notices(std::vector<input::Notice>& /*out*/) override {}
-
- private:
-  Hand& hand_;
-};
 
 class LiveTest : public testing::Test {
  protected:
@@ -358,6 +275,78 @@ TEST_F(LiveTest, TheInterfaceIsOnThePanelAndCostsNothingWhileItRests) {
   const auto now = status();
   for (const auto& control : now["controls"]) swatch |= control["widget"] == "swatch" && control["index"] == 1;
   EXPECT_TRUE(swatch) << now["controls"];
+}
+
+TEST_F(LiveTest, AReportOfTheImporterIsToldAndKeptForTheDealer) {
+  kiosk::InterfaceSettings settings;
+  settings.experience.tour = false;
+  settings.experience.reduced_motion = true;
+  settings.dpi = 10.0;
+  start(settings);
+  for (int k = 0; k < 80; ++k) step();
+  std::vector<int> descriptors;
+  live_->add_descriptors(descriptors);
+  EXPECT_EQ(descriptors.size(), 1u) << "the folder is watched";
+  const std::uint64_t taken = panel_->taken, drawn = picture_->drawn();
+  kiosk::ImportReport report;
+  report.time_s = static_cast<std::int64_t>(kiosk::wall_clock_s());
+  report.files.resize(1);
+  report.files[0].outcome = kiosk::ImportedFile::Outcome::stored;
+  report.files[0].id = "demo.spring";
+  ASSERT_TRUE(kiosk::write_import(folder_, report));
+  step();
+  step();
+  ASSERT_TRUE(interface_->model().toast);
+  EXPECT_EQ(interface_->model().toast->stored, std::vector<std::string>{"demo.spring"});
+  EXPECT_GT(panel_->taken, taken) << "it is on the panel";
+  EXPECT_EQ(picture_->drawn(), drawn) << "and the car was not drawn again for it";
+  now_ms_ += kiosk::toast_ms;
+  step();
+  step();
+  EXPECT_FALSE(interface_->model().toast);
+
+  std::ofstream(folder_ / "fresh") << "{";
+  std::filesystem::rename(folder_ / "fresh", folder_ / kiosk::import_file_name);
+  for (int k = 0; k < 5; ++k) step();
+  ASSERT_EQ(log_.problems().size(), 1u) << "one line";
+  EXPECT_NE(log_.problems()[0].text.find(kiosk::import_file_name), std::string::npos);
+  EXPECT_FALSE(interface_->model().toast);
+}
+
+TEST_F(LiveTest, WhoeverHasAPassForItDimsThePicture) {
+  kiosk::InterfaceSettings settings;
+  settings.experience.tour = false;
+  settings.experience.reduced_motion = true;
+  settings.experience.brightness = 0.5;
+  settings.dpi = 10.0;
+  const auto sum = [&] {
+    double all = 0.0;
+    for (const std::uint8_t byte : panel_->last.rgb) all += byte;
+    return all;
+  };
+  panel_->keeps = true;
+  start(settings);
+  settle();
+  const double dark = sum();
+  panel_->dims = true;
+  start(settings);
+  settle();
+  EXPECT_EQ(panel_->brightness, 0.5f);
+  EXPECT_NEAR(dark / sum(), 0.5, 0.02) << "not dimmed twice, and not by nobody";
+}
+
+TEST_F(LiveTest, ThePanelsOwnSizeCountsUnlessOneIsConfigured) {
+  kiosk::InterfaceSettings settings;
+  for (const double dpi : {0.0, 50.0}) {
+    settings.dpi = dpi;
+    start(settings);
+    panel_->plug({96, 54}, kiosk::Rotation::none, {24, 14});
+    step();
+    EXPECT_NEAR(interface_->experience().surface().dpi, dpi > 0.0 ? dpi : 100.0, 2.0);
+    panel_->plug({96, 54}, kiosk::Rotation::none, {160, 90});
+    step();
+    EXPECT_EQ(interface_->experience().surface().dpi, dpi > 0.0 ? dpi : 96.0) << "a shape, no size";
+  }
 }
 
 TEST_F(LiveTest, ALostDeviceEndsTheLoopWithItsName) {

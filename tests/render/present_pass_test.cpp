@@ -13,6 +13,7 @@
 #include "kiosk/display/output/panel_target.hpp"
 #include "kiosk/display/test_pattern.hpp"
 #include "render_gles/display_model.hpp"
+#include "render_gles/overlay.hpp"
 #include "tests/render/support.hpp"
 
 namespace lackwerk::test {
@@ -124,6 +125,46 @@ TEST_P(Present, BlueMayComeFirst) {
     for (std::size_t k = 0; k < bgr.rgb.size(); k += 3) std::swap(bgr.rgb[k], bgr.rgb[k + 2]);
     EXPECT_EQ(different_bytes(rgb, bgr), 0u);
   }
+}
+
+TEST_P(Present, DimsAsTheOverlayDoes) {
+  PresentPass pass(*context_);
+  auto overlay = gles::Overlay::create(*context_);
+  ASSERT_TRUE(overlay);
+  const Image image = random_image(64, 48);
+  const Framebuffer from = picture(image);
+  for (const bool profiled : {false, true}) {
+    pass.set(Rotation::none, profiled ? wide(2.4) : DisplayProfile());
+    for (const float brightness : {0.2f, 0.5f, 0.73f, 0.95f}) {
+      gles::OverlayLook look;
+      look.brightness = brightness;
+      const auto dimmed = (*overlay)->compose(from, {}, look);
+      ASSERT_TRUE(dimmed);
+      pass.set_brightness(1.0f);
+      const Image before = shown(pass, **dimmed, {64, 48});
+      pass.set_brightness(brightness);
+      const Image within = shown(pass, from, {64, 48});
+      // Where a value is half way between two, each may round its own way: one step of the picture, which the panel's
+      // curve may make two of (its noise is the same).
+      int most = 0;
+      for (std::size_t k = 0; k < before.rgb.size(); ++k)
+        most = std::max(most, std::abs(int{before.rgb[k]} - int{within.rgb[k]}));
+      EXPECT_LE(most, profiled ? 2 : 1) << brightness;
+      if (!profiled) {
+        double off = 0.0;
+        for (std::size_t k = 0; k < within.rgb.size(); ++k)
+          off = std::max(off, std::abs(within.rgb[k] - static_cast<double>(brightness) * image.rgb[k]));
+        EXPECT_LE(off, 0.5 + 0.26) << brightness;
+      }
+    }
+    pass.set_brightness(1.0f);
+    if (profiled) continue;
+    EXPECT_EQ(different_bytes(shown(pass, from, {64, 48}), image), 0u) << "1 is a copy again";
+  }
+  pass.set(Rotation::none, {}, true);
+  const Image pattern = shown(pass, from, {64, 48});
+  pass.set_brightness(0.5f);
+  EXPECT_EQ(different_bytes(shown(pass, from, {64, 48}), pattern), 0u) << "the test pattern is what it is";
 }
 
 TEST_P(Present, OtherSizesAreStretched) {

@@ -112,6 +112,27 @@ succeed pack info p.lwp
 succeed pack info p.lwp --json
 grep -q '"serial": 7' out.txt && grep -q '"paints"' out.txt || { echo 'FAILED: pack info --json'; failures=$((failures + 1)); }
 grep -q '"beyond_limit"' out.txt || { echo 'FAILED: no beyond_limit'; failures=$((failures + 1)); }
+# Every field says what it is, and nothing is said of a field that is not there.
+python3 - out.txt <<'EOF' || { echo 'FAILED: pack info --json has fields without a word about them'; failures=$((failures + 1)); }
+import json, sys
+info = json.load(open(sys.argv[1]))
+seen = set()
+def walk(value, path):
+    for key, inner in value.items():
+        here = f"{path}.{key}" if path else key
+        seen.add(here)
+        if here == "fields":
+            continue
+        if isinstance(inner, list) and inner and isinstance(inner[0], dict):
+            for entry in inner:
+                walk(entry, here + "[]")
+        elif isinstance(inner, dict):
+            walk(inner, here)
+walk(info, "")
+said = set(info["fields"])
+assert seen == said, f"without a word: {sorted(seen - said)}; not there: {sorted(said - seen)}"
+assert all(field["meaning"] for field in info["fields"].values())
+EOF
 expect 1 'missing.lwp' pack info missing.lwp
 expect 1 'regular file' pack info good
 # flip FILE OFFSET: another byte there.

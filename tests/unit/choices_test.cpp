@@ -13,7 +13,12 @@ namespace lackwerk::kiosk {
 namespace {
 
 DealerChoices odd_choices() {
-  return {ui::Language::arabic, true, true, 0.35, input::CalibrationMatrix{0.0, -1.0, 1.0, 1.01, 0.0, 1.0 / 3.0}};
+  return {ui::Language::arabic,
+          true,
+          true,
+          0.35,
+          input::CalibrationMatrix{0.0, -1.0, 1.0, 1.01, 0.0, 1.0 / 3.0},
+          PinRecord{3, 240.0, 1'762'000'000.25}};
 }
 
 void expect_equal(const DealerChoices& one, const DealerChoices& two) {
@@ -22,6 +27,7 @@ void expect_equal(const DealerChoices& one, const DealerChoices& two) {
   EXPECT_EQ(one.reduced_motion, two.reduced_motion);
   EXPECT_EQ(one.brightness, two.brightness);
   EXPECT_EQ(one.calibration, two.calibration);
+  EXPECT_EQ(one.pin, two.pin);
 }
 
 TEST(Choices, AreReadBackAsTheyWereWritten) {
@@ -61,11 +67,30 @@ TEST(Choices, WhatIsAbsentIsAsConfiguredAndWhatIsUnknownIsPassedOver) {
 }
 
 TEST(Choices, DamageIsSaidAndNothingOfItIsUsed) {
-  for (const char* text :
-       {"", "{", "[]", "null", "3", "\xff", R"({"language": "fr"})", R"({"language": 1})", R"({"beyond": 1})",
-        R"({"reduced_motion": "true"})", R"({"brightness": 0.1})", R"({"brightness": 1e999})",
-        R"({"brightness": null})", R"({"calibration": []})", R"({"calibration": [0, 0, 0, 0, 0, 0]})",
-        R"({"calibration": [1, 0, 0, 0, 1, "0"]})", R"({"calibration": [1, 0, 0, 0, 1, 1e999]})", "{} {}"}) {
+  for (const char* text : {"",
+                           "{",
+                           "[]",
+                           "null",
+                           "3",
+                           "\xff",
+                           R"({"language": "fr"})",
+                           R"({"language": 1})",
+                           R"({"beyond": 1})",
+                           R"({"reduced_motion": "true"})",
+                           R"({"brightness": 0.1})",
+                           R"({"brightness": 1e999})",
+                           R"({"brightness": null})",
+                           R"({"calibration": []})",
+                           R"({"calibration": [0, 0, 0, 0, 0, 0]})",
+                           R"({"calibration": [1, 0, 0, 0, 1, "0"]})",
+                           R"({"calibration": [1, 0, 0, 0, 1, 1e999]})",
+                           "{} {}",
+                           R"({"pin_wrong": 5})",
+                           R"({"pin_wrong": -1})",
+                           R"({"pin_wrong": "0"})",
+                           R"({"pin_lock_s": 1e6})",
+                           R"({"pin_locked_until_s": -1})",
+                           R"({"pin_locked_until_s": 1e300})"}) {
     const auto read = parse_choices(text, "dealer.json", {});
     ASSERT_FALSE(read) << text;
     EXPECT_EQ(read.error().file, "dealer.json");

@@ -776,6 +776,144 @@ TEST(Experience, TheDealersScreenClosesByItselfToo) {
 
 // ---- the house around it
 
+TEST(Experience, ALockOutlivesARestart) {
+  double wall_s = 1.7e9;
+  ExperienceLinks links = some_links();
+  links.wall_s = [&] { return wall_s; };
+  ExperienceSettings settings = some_settings();
+  settings.idle_s = 3600.0;
+  Visitor first(3, settings, links);
+  first.begin();
+  first.open_pin();
+  EXPECT_FALSE(first.experience.take_choices());
+  for (int k = 0; k < pin_attempts; ++k) {
+    first.type("0000");
+    const auto kept = first.experience.take_choices();
+    ASSERT_TRUE(kept) << "each attempt is kept";
+    EXPECT_EQ(kept->pin.wrong, (k + 1) % pin_attempts);
+    settings.pin = kept->pin;
+  }
+  EXPECT_EQ(settings.pin.locked_until_s, wall_s + first_lock_s);
+  wall_s += 20.0;
+  Visitor second(3, settings, links);
+  second.begin();
+  second.open_pin();
+  EXPECT_NEAR(second.model().pin.locked_s, first_lock_s - 20.0, 6.0) << "less the dealer's gesture";
+  EXPECT_GT(second.model().pin.locked_s, 0.0);
+  second.type("2580");
+  EXPECT_EQ(second.model().screen, ui::Screen::pin);
+  second.wait(1e3 * first_lock_s);
+  second.type("2580");
+  EXPECT_EQ(second.model().screen, ui::Screen::dealer);
+  const auto kept = second.experience.take_choices();
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->pin, PinRecord{});
+}
+
+TEST(Experience, MoodsFadeAndThenNothingMoves) {
+  ExperienceSettings settings = some_settings();
+  settings.tour = false;
+  settings.idle_s = 3600.0;
+  Visitor visitor(3, settings);
+  visitor.begin();
+  visitor.wait(2000.0);
+  const auto share = [&](std::size_t mood) { return visitor.experience.state().light_shares()[mood]; };
+  ASSERT_EQ(share(0), 1.0);
+  visitor.tap(ui::Widget::light, 1);
+  EXPECT_EQ(visitor.experience.state().light(), 1) << "chosen at once";
+  double before = share(1);
+  EXPECT_LT(before, 0.1) << "shown little by little";
+  for (double ms = 0.0; ms < light_fade_ms / 2.0; ms += 50.0) {
+    visitor.all = {};
+    visitor.wait(50.0);
+    EXPECT_TRUE(visitor.all.view);
+    EXPECT_GT(share(1), before);
+    EXPECT_NEAR(share(0) + share(1) + share(2), 1.0, 1e-12);
+    before = share(1);
+  }
+  // Another one on the way: on from what is shown.
+  visitor.tap(ui::Widget::light, 2);
+  EXPECT_GT(share(1), 0.3);
+  visitor.wait(light_fade_ms);
+  EXPECT_EQ(share(2), 1.0);
+  visitor.wait(1000.0);
+  visitor.all = {};
+  visitor.wait(1000.0);
+  EXPECT_FALSE(visitor.all.view);
+  EXPECT_GT(visitor.experience.wake_at_ms(visitor.now_ms), visitor.now_ms + 1000.0) << "nothing moves any more";
+
+  settings.reduced_motion = true;
+  Visitor still(3, settings);
+  still.begin();
+  still.tap(ui::Widget::light, 1);
+  EXPECT_EQ(still.experience.state().light_shares()[1], 1.0);
+}
+
+TEST(Experience, TheCountdownSaysWhatItCountsFrom) {
+  Visitor visitor;
+  visitor.begin();
+  visitor.wait(1e3 * some_settings().idle_s);
+  ASSERT_TRUE(visitor.model().countdown_s);
+  EXPECT_EQ(visitor.model().countdown_whole_s, some_settings().countdown_s);
+  EXPECT_LE(*visitor.model().countdown_s, visitor.model().countdown_whole_s);
+}
+
+ui::Toast some_toast() {
+  ui::Toast toast;
+  toast.stored = {"demo.spring"};
+  return toast;
+}
+
+TEST(Experience, ANoticeGoesByItselfAndIsNoInput) {
+  ExperienceSettings settings = some_settings();
+  settings.tour = false;
+  Visitor visitor(3, settings);
+  EXPECT_TRUE(visitor.experience.tell(some_toast(), visitor.now_ms).interface);
+  EXPECT_EQ(visitor.model().screen, ui::Screen::attract);
+  EXPECT_NEAR(visitor.experience.wake_at_ms(visitor.now_ms), visitor.now_ms + toast_ms, 1e-6) << "sleeps until then";
+  visitor.wait(toast_ms - 50.0);
+  EXPECT_EQ(visitor.model().toast, some_toast());
+  visitor.wait(100.0);
+  EXPECT_FALSE(visitor.model().toast);
+  EXPECT_EQ(visitor.experience.wake_at_ms(visitor.now_ms), input::never_ms);
+
+  // A newer one takes its place and has its own time.
+  visitor.experience.tell(some_toast(), visitor.now_ms);
+  visitor.wait(toast_ms / 2.0);
+  ui::Toast refused;
+  refused.refused = 1;
+  visitor.experience.tell(refused, visitor.now_ms);
+  visitor.wait(toast_ms - 50.0);
+  EXPECT_EQ(visitor.model().toast, refused);
+}
+
+TEST(Experience, ANoticeOutlivesAResetAndWaitsForTheMorning) {
+  Visitor visitor;
+  visitor.begin();
+  const double ends_ms = 1e3 * (some_settings().idle_s + some_settings().countdown_s);
+  visitor.wait(ends_ms - 2000.0);
+  visitor.experience.tell(some_toast(), visitor.now_ms);
+  visitor.wait(3000.0);
+  EXPECT_EQ(visitor.model().screen, ui::Screen::attract);
+  EXPECT_TRUE(visitor.model().toast);
+
+  ExperienceSettings settings = some_settings();
+  settings.night = {22 * 60, 6 * 60};
+  Visitor late(3, settings);
+  late.minute = 23 * 60;
+  late.wait(120e3);
+  ASSERT_TRUE(late.model().asleep);
+  late.experience.tell(some_toast(), late.now_ms);
+  late.wait(1e6);
+  EXPECT_TRUE(late.model().asleep) << "nobody is woken";
+  EXPECT_TRUE(late.model().toast);
+  late.minute = 7 * 60;
+  late.wait(61e3 - toast_ms);
+  late.wait(10.0 * toast_ms);
+  EXPECT_FALSE(late.model().asleep);
+  EXPECT_FALSE(late.model().toast);
+}
+
 TEST(Experience, AnotherPackGoesOnWithItsFirstPaint) {
   Visitor visitor = in_show();
   visitor.tap(Widget::swatch, 2);

@@ -96,6 +96,24 @@ TEST_F(Import, TakesSignedPacksByName) {
   EXPECT_EQ(again.files[0].outcome, Outcome::already_there);
 }
 
+TEST_F(Import, CapitalsAreTheSameName) {
+  put_pack("SUMMER.LWP", "summer", 5);
+  put_pack(".lwp", "winter", 1);
+  for (const char* spelled : {"LACKWERK", "Lackwerk"}) {
+    fs::rename(folder(), stick_ / spelled);
+    const ImportReport report = take();
+    ASSERT_EQ(report.files.size(), 1u) << spelled << ": " << report.error;
+    EXPECT_TRUE(report.is_good());
+    EXPECT_EQ(report.files[0].id, "summer");
+    fs::rename(stick_ / spelled, folder());
+  }
+  // Not another name, nor a link in capitals.
+  fs::rename(folder(), stick_ / "lackwerk2");
+  EXPECT_TRUE(has(take().error, "no such folder"));
+  fs::create_directory_symlink("lackwerk2", stick_ / "LACKWERK");
+  EXPECT_TRUE(has(take().error, "make it a folder of its own"));
+}
+
 TEST_F(Import, RefusesWhatIsNoPairOfRegularFiles) {
   put_pack("p.lwp", "summer", 5);
   const fs::path pack = folder() / "p.lwp", signature = packs::signature_path(pack), aside = stick_ / "aside";

@@ -39,6 +39,7 @@ std::vector<Model> models(std::size_t paints, Language language) {
       out.push_back(model);
       model.countdown_s = 9.0;
       model.nearest = Nearest{};
+      model.toast.emplace();
       out.push_back(model);
       continue;
     }
@@ -258,6 +259,26 @@ TEST(Layout, FieldLiesInsideThePadAndKeepsSwatchesWhole) {
       }
     }
   }
+}
+
+TEST(Layout, ThePadsMiddleIsThePucks) {
+  const auto check_middle = [](const Surface& surface, std::size_t paints, Language language) {
+    Model model = model_of(paints, Screen::show);
+    model.language = language;
+    const auto items = layout(surface, content_of(paints), model);
+    const auto pad = find_item(items, Widget::pad);
+    ASSERT_TRUE(pad);
+    const Place middle = pad_field(surface, pad->rect).centre();
+    EXPECT_EQ(item_at(items, Screen::show, middle).widget, Widget::pad) << described(surface, model, *pad);
+  };
+  for (const Language language : {Language::english, Language::arabic})
+    for (const std::size_t paints : {3U, 4U, 5U}) {
+      check_middle({{640, 360}, 96.0}, paints, language);
+      check_middle({{360, 640}, 96.0}, paints, language);
+      // At 300 dpi the square of 1080 is so small that a disc and its name reach the middle by themselves.
+      for (const auto& size : sizes)
+        for (const double dpi : {60.0, 96.0, 160.0, 220.0}) check_middle({size, dpi}, paints, language);
+    }
 }
 
 TEST(Layout, SwatchesBeginApartAndInside) {

@@ -57,6 +57,37 @@ TEST(Mood, NothingJumpsOnTheWayInAndWhileDimming) {
   }
 }
 
+TEST(Mood, SharesBlendWithoutAJumpAndOneAloneIsThatLight) {
+  const auto apart = [](const gles::Lighting& a, const gles::Lighting& b) {
+    const auto light = [](const gles::Lighting& of) {
+      return of.lights.empty() ? glm::vec3(0.0f) : of.lights[0].radiance;
+    };
+    return std::max({glm::length(light(a) - light(b)), std::abs(a.environment_gain - b.environment_gain),
+                     glm::length(a.backdrop - b.backdrop), std::abs(a.lamp_glow - b.lamp_glow)});
+  };
+  for (const float distance : {5300.0f, 60.0f}) {
+    const packs::Camera from = camera("", distance, 28.0f);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        std::array<double, 3> shares{};
+        shares[static_cast<std::size_t>(a)] = 1.0;
+        EXPECT_EQ(lighting_of(from, shares, 0.3), lighting_of(from, a, 0.3));
+        gles::Lighting before = lighting_of(from, a, 0.3);
+        constexpr int steps = 200;
+        for (int k = 1; k <= steps; ++k) {
+          const double t = static_cast<double>(k) / steps;
+          shares = {};
+          shares[static_cast<std::size_t>(a)] += 1.0 - t;
+          shares[static_cast<std::size_t>(b)] += t;
+          const gles::Lighting now = lighting_of(from, shares, 0.3);
+          EXPECT_LT(apart(before, now), 0.05f) << a << " to " << b << " at " << t;
+          before = now;
+        }
+        EXPECT_EQ(before, lighting_of(from, b, 0.3));
+      }
+  }
+}
+
 TEST(Mood, EachLightIsAnotherOneAndNumbersOutsideAreTheNearest) {
   const packs::Camera hero = camera("hero", 5300.0f, 28.0f);
   EXPECT_NE(lighting_of(hero, 0, 0.0), lighting_of(hero, 1, 0.0));

@@ -55,11 +55,24 @@ DealerFacts facts() {
   out.status.packs = {{"demo.lwp", "demo", 3, true, {"A", "B"}}};
   out.status.devices = {{"Panel", "touch", "ready", "/dev/input/event1"}, {"Dial", "dial", "gone", "unplugged"}};
   out.log = {"something went wrong (do this)", "something else"};
+  out.import.emplace();
+  out.import->error = "lackwerk: something is wrong with the stick";
+  out.import->files.resize(2);
+  out.import->files[0].error = "a.lwp: not signed";
+  out.import->files[1].outcome = ImportedFile::Outcome::stored;
+  return out;
+}
+
+Toast toast(bool good) {
+  Toast out;
+  if (good) out.stored = {"demo.spring", "demo.summer"};
+  out.refused = 2;
+  out.reason = "rogue.lwp: signed with key 0123456789ABCDEF, which is not in the keyring (put the maker's key there)";
   return out;
 }
 
 std::vector<Model> show_models(Language language) {
-  std::vector<Model> models(7, show_model());
+  std::vector<Model> models(9, show_model());
   models[1].hint = true;
   models[2].nearest = Nearest{0, {1.2, 0.8, 12.4}};
   models[3].countdown_s = 12.0;
@@ -68,6 +81,9 @@ std::vector<Model> show_models(Language language) {
   models[6].focus = Widget::car;
   models[6].sparkle_free = true;
   models[6].pressed = Widget::light;
+  models[7].toast = toast(true);
+  models[8].toast = toast(false);
+  models[8].countdown_s = 3.0;
   for (Model& model : models) model.language = language;
   return models;
 }
@@ -79,6 +95,9 @@ std::vector<Model> models(Language language) {
   for (const Screen screen : {Screen::attract, Screen::take_home, Screen::about, Screen::pin}) {
     model.screen = screen;
     out.push_back(model);
+    model.toast = toast(false);
+    out.push_back(model);
+    model.toast.reset();
   }
   model.pin = {0, 2, 0.0, true};
   model.screen = Screen::pin;

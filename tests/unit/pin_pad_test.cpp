@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "input/source.hpp"
 
 namespace lackwerk::kiosk {
@@ -83,6 +85,51 @@ TEST(PinPad, EveryFurtherLockIsTwiceAsLongUpToAnHour) {
   EXPECT_TRUE(dealer.type("4711"));
   dealer.fail_until_locked();
   EXPECT_EQ(dealer.pad.locked_s(dealer.now_ms), first_lock_s) << "the right one forgives";
+}
+
+TEST(PinPad, ARestartForgetsNothing) {
+  constexpr double wall_s = 1.7e9;
+  Dealer dealer;
+  EXPECT_FALSE(dealer.pad.take_changed());
+  EXPECT_TRUE(dealer.type("4711"));
+  EXPECT_FALSE(dealer.pad.take_changed()) << "nothing to keep";
+  dealer.type("1");
+  EXPECT_TRUE(dealer.pad.take_changed());
+  EXPECT_FALSE(dealer.pad.take_changed()) << "said once";
+  Dealer second;
+  second.pad.restore(dealer.pad.record(dealer.now_ms, wall_s), second.now_ms, wall_s + 10.0);
+  EXPECT_EQ(second.pad.model(second.now_ms).attempts_left, pin_attempts - 1);
+  for (int k = 1; k < pin_attempts; ++k) second.type("1");
+  ASSERT_EQ(second.pad.locked_s(second.now_ms), first_lock_s);
+
+  const PinRecord locked = second.pad.record(second.now_ms + 20e3, wall_s);
+  Dealer third;
+  third.pad.restore(locked, third.now_ms, wall_s + 15.0);
+  EXPECT_EQ(third.pad.locked_s(third.now_ms), first_lock_s - 35.0) << "time went on while it was off";
+  third.now_ms += 1e3 * first_lock_s;
+  third.fail_until_locked();
+  EXPECT_EQ(third.pad.locked_s(third.now_ms), 2.0 * first_lock_s) << "the next lock is the second";
+
+  third.pad.restore(locked, third.now_ms, wall_s + 1e5);
+  EXPECT_EQ(third.pad.locked_s(third.now_ms), 0.0) << "long over";
+  third.pad.restore(locked, third.now_ms, wall_s - 1e8);
+  EXPECT_EQ(third.pad.locked_s(third.now_ms), first_lock_s) << "a clock that went back: once more, not for years";
+  third.now_ms += 1e3 * first_lock_s;
+  EXPECT_TRUE(third.type("4711"));
+  EXPECT_EQ(third.pad.record(third.now_ms, wall_s), PinRecord{}) << "the right one forgives";
+}
+
+TEST(PinPad, RecordsOutOfRangeAreCut) {
+  constexpr double far = 1e300, none = std::numeric_limits<double>::quiet_NaN();
+  for (const PinRecord& record : {PinRecord{99, far, far}, PinRecord{-5, -far, -far}, PinRecord{0, none, none}}) {
+    Dealer dealer;
+    dealer.pad.restore(record, dealer.now_ms, 1.7e9);
+    EXPECT_LE(dealer.pad.locked_s(dealer.now_ms), longest_lock_s);
+    EXPECT_GE(dealer.pad.locked_s(dealer.now_ms), 0.0);
+    dealer.now_ms += 1e3 * longest_lock_s;
+    EXPECT_GE(dealer.pad.model(dealer.now_ms).attempts_left, 1);
+    EXPECT_TRUE(dealer.type("4711"));
+  }
 }
 
 TEST(PinPad, WithoutACheckNothingIsRight) {

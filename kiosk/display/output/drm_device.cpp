@@ -101,6 +101,9 @@ class LibdrmDevice final : public KmsDevice {
     const char* type = drmModeGetConnectorTypeName(found->connector_type);
     out.name = std::string(type == nullptr ? "Unknown" : type) + "-" + std::to_string(found->connector_type_id);
     out.connected = found->connection == DRM_MODE_CONNECTED;
+    constexpr std::uint32_t most_mm = 100'000;
+    out.size_mm = {static_cast<int>(std::min(found->mmWidth, most_mm)),
+                   static_cast<int>(std::min(found->mmHeight, most_mm))};
     out.modes.reserve(static_cast<std::size_t>(std::max(found->count_modes, 0)));
     for (int k = 0; k < found->count_modes; ++k) out.modes.push_back(mode_of(found->modes[k]));
     for (int k = 0; k < found->count_encoders; ++k) {

@@ -56,7 +56,8 @@ struct DrmConnector {
   DrmId id = 0;
   std::string name;  ///< "HDMI-A-1"
   bool connected = false;
-  bool desktop = true;  ///< false: a headset or the like, not for pictures of ours
+  std::array<int, 2> size_mm{0, 0};  ///< of the monitor, as it says; 0: not said
+  bool desktop = true;               ///< false: a headset or the like, not for pictures of ours
   std::vector<DrmMode> modes;
   std::uint32_t possible_crtcs = 0;  ///< bit k: the k-th pipe of DrmResources
   DrmId crtc = 0;                    ///< it is fed by now

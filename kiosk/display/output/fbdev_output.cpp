@@ -173,6 +173,10 @@ class FbdevOutput final : public Output {
       std::memset(memory_.data(), 0, layout_.map_bytes);
     }
   }
+  [[nodiscard]] bool set_brightness(float brightness) override {
+    pass_->set_brightness(brightness);
+    return true;
+  }
   void set_profile(const DisplayProfile& profile) override {
     (void)context_->make_current();
     pass_->set(mode_.rotation, profile, test_pattern_, gamut_warning_);

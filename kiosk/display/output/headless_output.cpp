@@ -52,6 +52,10 @@ class OffscreenOutput final : public HeadlessOutput {
     if (on != power_) ++revision_;
     power_ = on;
   }
+  [[nodiscard]] bool set_brightness(float brightness) override {
+    pass_->set_brightness(brightness);
+    return true;
+  }
   void set_profile(const DisplayProfile& profile) override {
     pass_->set(mode_.rotation, profile, test_pattern_, gamut_warning_);
   }

@@ -110,6 +110,7 @@ DrmResult<void> KmsDisplay::take_pipe(Pipe pipe, const DrmSnapshot& snapshot) {
     if (const auto state = device_.pipe_state(pipe.crtc)) saved_ = Saved{pipe.connector.id, pipe.crtc, *state};
   mode_.connector = pipe.connector.name;
   mode_.panel_px = pipe.mode.size_px();
+  mode_.panel_mm = pipe.connector.size_mm;
   mode_.refresh_hz = pipe.mode.refresh_hz();
   pipe_ = std::move(pipe);
   full_ = true;

@@ -74,6 +74,7 @@ class DumbSurface final : public KmsSurface {
   void set_look(const Look& look) override {
     pass_->set(look.rotation, look.profile, look.test_pattern, look.gamut_warning);
   }
+  void set_brightness(float brightness) override { pass_->set_brightness(brightness); }
 
   Result<void> resize(std::array<int, 2> panel_px) override {
     target_.reset();

@@ -56,6 +56,7 @@ class GbmSurface final : public KmsSurface {
   void set_look(const Look& look) override {
     pass_->set(look.rotation, look.profile, look.test_pattern, look.gamut_warning);
   }
+  void set_brightness(float brightness) override { pass_->set_brightness(brightness); }
 
   Result<void> resize(std::array<int, 2> panel_px) override {
     drop_window();

@@ -70,6 +70,10 @@ class KmsOutput final : public Output {
   [[nodiscard]] std::uint64_t flipped_at_us() const override { return display_.flipped_at_us(); }
   [[nodiscard]] std::uint64_t presented() const override { return display_.presented(); }
   void set_power(bool on) override { display_.set_power(on, clock_()); }
+  [[nodiscard]] bool set_brightness(float brightness) override {
+    parts_.surface->set_brightness(brightness);
+    return true;
+  }
   void set_profile(const DisplayProfile& profile) override {
     look_.profile = profile;
     parts_.surface->set_look(look_);

@@ -28,6 +28,8 @@ class KmsSurface {
   [[nodiscard]] virtual Platform platform() const = 0;
   [[nodiscard]] virtual gles::Context& context() = 0;
   virtual void set_look(const Look& look) = 0;
+  /// As Output::set_brightness(); apart from the look, which compiles a program.
+  virtual void set_brightness(float brightness) = 0;
   /// New buffers. The display engine must have let go of the old ones. Error: no memory, or more than the driver can;
   /// there are no buffers then.
   [[nodiscard]] virtual Result<void> resize(std::array<int, 2> panel_px) = 0;

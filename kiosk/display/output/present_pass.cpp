@@ -74,6 +74,7 @@ PresentPass::Program PresentPass::make(bool profile, bool warning) const {
   out.tables = location("u_tables");
   out.panel = location("u_panel");
   out.bgr = location("u_bgr");
+  out.brightness = location("u_brightness");
   return out;
 }
 
@@ -162,6 +163,7 @@ void PresentPass::draw(const gles::Framebuffer& picture, std::array<int, 2> pane
   gl_->UseProgram(program_.program.id());
   gl_->Uniform1i(program_.picture, 0);
   gl_->Uniform1i(program_.tables, 1);
+  gl_->Uniform1f(program_.brightness, show_pattern_ ? 1.0f : brightness_);
   gl_->Uniform1f(program_.bgr, order == ChannelOrder::bgr ? 1.0f : 0.0f);
   if (tables_) {
     gl_->ActiveTexture(GL_TEXTURE1);

@@ -27,6 +27,9 @@ class PresentPass {
   /// `test_pattern`: drawn in the picture's place. `gamut_warning`: colours the panel cannot show are hatched.
   void set(Rotation rotation, const DisplayProfile& profile, bool test_pattern = false, bool gamut_warning = false);
 
+  /// From the next draw() on: a factor on the picture's display values, [0, 1]; the test pattern stays as it is.
+  void set_brightness(float brightness) { brightness_ = brightness; }
+
   /// Draws `picture`, of picture_size(rotation, panel_px), over all of the target: a panel of `panel_px`. Another size
   /// is stretched. `target_framebuffer`: 0 is the window surface. `flip_y`: the panel's upper row becomes the target's
   /// row 0, as memory that is read back wants it; a window surface wants false. Alpha becomes 1. Leaves the target
@@ -37,7 +40,7 @@ class PresentPass {
  private:
   struct Program {
     gles::GlObject program;
-    GLint picture = -1, tables = -1, panel = -1, bgr = -1;
+    GLint picture = -1, tables = -1, panel = -1, bgr = -1, brightness = -1;
   };
   [[nodiscard]] Program make(bool profile, bool warning) const;
   void upload_corners();
@@ -52,6 +55,7 @@ class PresentPass {
   DisplayProfile profile_;
   bool show_pattern_ = false;
   int table_size_ = 0;
+  float brightness_ = 1.0f;
   std::array<int, 2> pattern_px_{0, 0};
 };
 

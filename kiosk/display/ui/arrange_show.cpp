@@ -7,6 +7,9 @@
 namespace lackwerk::kiosk::ui {
 namespace {
 
+/// Around the pad's middle, in targets: half of it is the puck's radius.
+constexpr double puck_room = 0.25;
+
 class Show {
  public:
   Show(const Metrics& metrics, const Surface& surface, const Content& content, const Model& model, Arrangement& out)
@@ -51,9 +54,12 @@ class Show {
       Rect name{x - label_width / 2.0, y + m_.swatch / 2.0, label_width, m_.label};
       name.x = std::clamp(name.x, pad_.x + m_.margin / 2.0, pad_.x + pad_.width - m_.margin / 2.0 - label_width);
       name = whole(name);
-      // Downwards from the disc, as far as the surface goes.
+      // Downwards from the disc, as far as the surface goes; on a small pad not over its middle, where the puck is at
+      // home: rather over the disc, which wins where a finger is nearer to it.
       Rect touch{name.x, name.y, std::max(name.width, m_.target), std::max(name.height, m_.target)};
       touch.y = std::min(touch.y, m_.height - touch.height);
+      const double free_from = field.centre()[1] - puck_room * m_.target;
+      if (name.y < free_from) touch.y = std::min(touch.y, std::floor(free_from) - touch.height);
       out_.items.push_back({Widget::swatch_about, paint, name, whole(touch)});
       item(Widget::swatch, paint, {x - m_.swatch / 2.0, y - m_.swatch / 2.0, m_.swatch, m_.swatch});
     }

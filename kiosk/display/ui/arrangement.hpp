@@ -31,6 +31,7 @@ enum class Part : std::uint8_t {
   digits,         ///< pin: the dots of what was typed
   value,          ///< dealer: what is between step_down and step_up; index: ScreenValue
   cross,          ///< dealer: the calibration's
+  toast,          ///< on every screen: what came of a stick; nothing to touch
 };
 
 struct Piece {

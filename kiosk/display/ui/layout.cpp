@@ -22,6 +22,16 @@ bool names_half(Part part) {
   return part == Part::divider || part == Part::compare_left || part == Part::compare_right || part == Part::cross;
 }
 
+/// For two lines of headline and two of reason: over the car at the top, below the lights; at the lower edge of cards,
+/// whose titles are at the top.
+Rect toast_place(const Metrics& m, Screen screen) {
+  const double width = std::min(m.width - 2.0 * m.margin, std::max(0.9 * m.edge, 30.0 * m.text));
+  const double height = 7.2 * m.text;
+  const bool over_car = screen == Screen::attract || screen == Screen::show;
+  const double y = over_car ? 1.5 * m.margin + m.target : m.height - 1.5 * m.margin - height;
+  return whole({(m.width - width) / 2.0, std::max(0.0, y), width, std::min(height, m.height)});
+}
+
 void mirror(Rect& rect, double width) { rect.x = width - rect.x - rect.width; }
 
 /// Right to left, everything changes sides as a whole; what stands on the pad keeps its place there, for paints have no
@@ -64,6 +74,7 @@ Arrangement arrange(const Surface& surface, const Content& content, const Model&
     arrange_show(metrics, surface, content, model, out);
   else
     arrange_card(metrics, surface, model, out);
+  if (model.toast) out.pieces.push_back({Part::toast, 0, toast_place(metrics, model.screen)});
   if (model.countdown_s) {
     // Over everything: any touch stays. In portrait above the middle, clear of the mix's name.
     const double side = std::round(0.36 * metrics.edge);

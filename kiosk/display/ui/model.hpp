@@ -93,6 +93,15 @@ struct DealerModel {
   bool operator==(const DealerModel&) const = default;
 };
 
+/// What came of a stick that was plugged in. Lists by the packs' identifiers.
+struct Toast {
+  std::vector<std::string> stored;  ///< in use now
+  std::vector<std::string> known;   ///< the same were there already
+  int refused = 0;                  ///< packs
+  std::string reason;               ///< of the first that was refused, or of the stick as a whole; one line
+  bool operator==(const Toast&) const = default;
+};
+
 // One of these exists: the order is that of reading, not of size.
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct Model {
@@ -115,18 +124,20 @@ struct Model {
 
   std::optional<Nearest> nearest;     ///< while compare is held
   std::optional<double> countdown_s;  ///< whole seconds, while it is visible
+  double countdown_whole_s = 15.0;    ///< what it counts down from
   Widget focus = Widget::none;        ///< what a knob turns; none: no knob was used on this visit
   int focus_index = 0;
   Widget pressed = Widget::none;  ///< under a finger now, to be shown so
   int pressed_index = 0;
 
-  int about_paint = 0;   ///< on Screen::about
-  std::string mix_name;  ///< "72 % Polaris, 28 % Opel Titan, lively", in the model's language
-  std::string mix_code;  ///< on Screen::take_home: what the QR code says
-  PinModel pin;          ///< on Screen::pin
-  DealerModel dealer;    ///< on Screen::dealer
-  bool hint = false;     ///< the hand that shows what to do: early in a visit, until something was dragged
-  bool asleep = false;   ///< the night schedule: the panel is off
+  int about_paint = 0;         ///< on Screen::about
+  std::string mix_name;        ///< "72 % Polaris, 28 % Opel Titan, lively", in the model's language
+  std::string mix_code;        ///< on Screen::take_home: what the QR code says
+  PinModel pin;                ///< on Screen::pin
+  DealerModel dealer;          ///< on Screen::dealer
+  bool hint = false;           ///< the hand that shows what to do: early in a visit, until something was dragged
+  bool asleep = false;         ///< the night schedule: the panel is off
+  std::optional<Toast> toast;  ///< for some seconds, over everything but the countdown
   bool operator==(const Model&) const = default;
 };
 

@@ -48,6 +48,7 @@ class CairoPainter final : public Painter {
                     tiles_,
                     measured_};
     paint_screen(look);
+    paint_toast(look);
     paint_countdown(look);
     return tiles_.end();
   }

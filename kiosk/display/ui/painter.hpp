@@ -8,11 +8,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/error.hpp"
+#include "kiosk/display/import.hpp"
 #include "kiosk/display/status.hpp"
 #include "kiosk/display/ui/content.hpp"
 #include "kiosk/display/ui/layout.hpp"
@@ -44,7 +46,8 @@ struct Painted {
 /// What the dealer's pages show besides the model.
 struct DealerFacts {
   Status status;
-  std::vector<std::string> log;  ///< last errors, newest first, one line each
+  std::vector<std::string> log;        ///< last errors, newest first, one line each
+  std::optional<ImportReport> import;  ///< of the last stick, since the machine was started
 };
 
 class Painter {

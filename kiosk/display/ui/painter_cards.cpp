@@ -214,14 +214,13 @@ void paint_countdown(const Look& look) {
   if (!item || !look.model.countdown_s) return;
   const Rect card = item->rect;
   const double seconds = std::max(0.0, std::ceil(*look.model.countdown_s));
-  look.tiles.show(TileKind::card, countdown_card, Key(look.base, seconds), card, [&](cairo_t* cr) {
+  const double whole_s = std::max(look.model.countdown_whole_s, 1.0);
+  look.tiles.show(TileKind::card, countdown_card, Key(look.base, seconds, whole_s), card, [&](cairo_t* cr) {
     draw_glass(cr, card, corner(look), card_glass, look.line);
     const double radius = 0.27 * card.height, line = 4.0 * look.line;
     const Place centre{card.centre()[0], card.y + 0.42 * card.height};
     draw_ring(cr, centre, radius, line, track.with(0.16));
-    // A quarter of a minute is the whole ring, as the usual countdown is.
-    constexpr double whole_ring_s = 15.0;
-    const double turn = 6.283185307179586 * std::min(1.0, seconds / whole_ring_s), top = -1.5707963267948966;
+    const double turn = 6.283185307179586 * std::min(1.0, seconds / whole_s), top = -1.5707963267948966;
     cairo_new_sub_path(cr);
     cairo_arc_negative(cr, centre[0], centre[1], radius, top, top - turn);
     set_colour(cr, accent);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct Row {
   Kind kind = Kind::fact;
   std::string label, value;
   bool alarming = false;
+  bool spoken = false;  ///< a fact's value, a heading's label: in the interface's language, not the machine's
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -34,6 +36,38 @@ std::string milliseconds(double ms) {
   return buffer.data();
 }
 
+Text outcome_text(ImportedFile::Outcome outcome) {
+  switch (outcome) {
+    case ImportedFile::Outcome::stored:
+      return Text::stored;
+    case ImportedFile::Outcome::already_there:
+      return Text::already_there;
+    case ImportedFile::Outcome::refused:
+      break;
+  }
+  return Text::refused;
+}
+
+/// Local date and minute, as every dealer reads them.
+std::string clock_text(std::int64_t time_s) {
+  const std::time_t time = time_s;
+  std::tm local{};
+  std::array<char, 32> out{};
+  if (localtime_r(&time, &local) == nullptr) return {};
+  return {out.data(), std::strftime(out.data(), out.size(), "%Y-%m-%d %H:%M", &local)};
+}
+
+void add_import_rows(const Look& look, const ImportReport& report, std::vector<Row>& rows) {
+  rows.push_back(
+      {Row::Kind::heading, std::string(look.text(Text::last_stick)), clock_text(report.time_s), false, true});
+  if (!report.error.empty()) rows.push_back({Row::Kind::note, report.error, "", true});
+  for (const ImportedFile& file : report.files) {
+    rows.push_back({Row::Kind::fact, file.file, std::string(look.text(outcome_text(file.outcome))),
+                    file.outcome == ImportedFile::Outcome::refused});
+    if (!file.error.empty()) rows.push_back({Row::Kind::note, file.error, "", false});
+  }
+}
+
 std::vector<Row> pack_rows(const Look& look, const Status& status) {
   std::vector<Row> rows;
   for (const PackStatus& pack : status.packs) {
@@ -44,6 +78,7 @@ std::vector<Row> pack_rows(const Look& look, const Status& status) {
     if (!pack.is_signed) rows.push_back({Row::Kind::note, std::string(look.text(Text::unsigned_pack)), "", true});
   }
   if (rows.empty()) rows.push_back({Row::Kind::note, std::string(look.text(Text::no_packs)), "", false});
+  if (look.dealer->import) add_import_rows(look, *look.dealer->import, rows);
   return rows;
 }
 
@@ -66,11 +101,20 @@ std::vector<Row> status_rows(const Look& look, const Status& status) {
   return rows;
 }
 
+/// "ready, 127 events"; a device of which nothing was heard is said to be what it is.
+std::string device_text(const Look& look, const input::DeviceStatus& device) {
+  std::string out(state_text(device.state, look.model.language));
+  if (device.heard == 0 && device.state != "ready") return out;
+  out += mix_words(look.model.language).list_separator;
+  out += device.heard == 1 ? std::string(look.text(Text::one_event))
+                           : text_with(Text::events, look.model.language, static_cast<long long>(device.heard));
+  return out;
+}
+
 std::vector<Row> device_rows(const Look& look, const Status& status) {
   std::vector<Row> rows;
   for (const input::DeviceStatus& device : status.devices) {
-    rows.push_back({Row::Kind::fact, device.name, std::string(state_text(device.state, look.model.language)),
-                    device.state != "ready"});
+    rows.push_back({Row::Kind::fact, device.name, device_text(look, device), device.state != "ready", true});
     if (!device.detail.empty()) rows.push_back({Row::Kind::note, device.detail, "", false});
   }
   if (rows.empty()) rows.push_back({Row::Kind::note, std::string(look.text(Text::no_devices)), "", false});
@@ -120,10 +164,10 @@ void draw_rows(const Look& look, cairo_t* cr, const Rect& box, const std::vector
     if (row.kind == Row::Kind::heading && !first) y += text;
     style.from_top = true;
     // Names, paths and figures of the machine.
-    style.machine_text = true;
+    style.machine_text = !(row.spoken && row.kind == Row::Kind::heading);
     const double left = box.y + box.height - y;
     const Rect line{box.x, y, box.width, left};
-    const double split = row.kind == Row::Kind::fact ? column : box.width - 7.0 * text;
+    const double split = row.kind == Row::Kind::fact ? column : box.width - std::min(11.0 * text, 0.45 * box.width);
     const bool two = !row.value.empty();
     const Rect label = two ? look.leading(line, split - text) : line;
     const double height = look.fonts.measure(row.label, style, label.width)[1];
@@ -133,6 +177,7 @@ void draw_rows(const Look& look, cairo_t* cr, const Rect& box, const std::vector
     if (two) {
       TextStyle value = style;
       value.colour = row.alarming ? accent : text_colour;
+      value.machine_text = !(row.spoken && row.kind == Row::Kind::fact);
       if (row.kind == Row::Kind::heading) value.align = Align::trailing;
       look.fonts.draw(cr, row.value, value, look.after(line, split));
     }

@@ -100,6 +100,7 @@ void paint_take_home(const Look& look);
 void paint_about(const Look& look);
 void paint_pin(const Look& look);
 void paint_dealer(const Look& look);
+void paint_toast(const Look& look);
 void paint_countdown(const Look& look);
 
 }  // namespace lackwerk::kiosk::ui

@@ -49,6 +49,14 @@ constexpr std::array<Line, text_count> table{{
     {Text::unsigned_pack, {"Unsigned paints", "Lacke ohne Signatur", "دهانات بلا توقيع"}},
     {Text::no_devices, {"No devices", "Keine Geräte", "لا توجد أجهزة"}},
     {Text::no_errors, {"No errors", "Keine Fehler", "لا توجد أخطاء"}},
+    {Text::new_paints, {"New paints are in: {}", "Neue Lacke sind da: {}", "وصلت دهانات جديدة: {}"}},
+    {Text::known_paints,
+     {"These paints are there already: {}", "Diese Lacke sind schon da: {}", "هذه الدهانات موجودة من قبل: {}"}},
+    {Text::packs_refused, {"Packs refused: {}", "Abgelehnte Pakete: {}", "الحزم المرفوضة: {}"}},
+    {Text::nothing_came, {"Nothing came from the stick", "Vom Stick kam nichts", "لم يصل شيء من وحدة USB"}},
+    {Text::last_stick, {"Last USB stick", "Letzter USB-Stick", "آخر وحدة USB"}},
+    {Text::stored, {"taken", "übernommen", "أُضيفت"}},
+    {Text::already_there, {"already there", "schon da", "موجودة من قبل"}},
     {Text::serial, {"No. {}", "Nr. {}", "رقم {}"}},
     {Text::brightness, {"Brightness", "Helligkeit", "السطوع"}},
     {Text::test_pattern, {"Test pattern", "Testbild", "صورة الاختبار"}},
@@ -81,6 +89,8 @@ constexpr std::array<Line, text_count> table{{
     {Text::waiting, {"waiting", "wartet", "بالانتظار"}},
     {Text::refused, {"refused", "abgelehnt", "مرفوض"}},
     {Text::gone, {"gone", "entfernt", "غير موصول"}},
+    {Text::one_event, {"1 event", "1 Ereignis", "حدث واحد"}},
+    {Text::events, {"{} events", "{} Ereignisse", "الأحداث: {}"}},
 }};
 
 constexpr bool complete() {
@@ -114,11 +124,27 @@ std::string_view text(Text what, Language language) {
   return table[line].in[column];
 }
 
-std::string text_with(Text what, Language language, long long number) {
-  std::string out(text(what, language));
+namespace {
+
+std::string filled(std::string_view pattern, const std::string& with) {
+  std::string out(pattern);
   const std::size_t at = out.find("{}");
-  if (at != std::string::npos) out.replace(at, 2, std::to_string(number));
+  if (at != std::string::npos) out.replace(at, 2, with);
   return out;
+}
+
+constexpr std::string_view isolate = "\u2068", end_isolate = "\u2069";
+
+}  // namespace
+
+std::string text_with(Text what, Language language, long long number) {
+  return filled(text(what, language), std::to_string(number));
+}
+
+std::string text_with(Text what, Language language, std::string_view words) {
+  std::string with(words);
+  if (right_to_left(language)) with = std::string(isolate) + with + std::string(end_isolate);
+  return filled(text(what, language), with);
 }
 
 packs::MixWords mix_words(Language language) {
@@ -139,7 +165,7 @@ std::string_view short_name(std::string_view name) {
 }
 
 std::string set_mix_name(std::string_view mix_name, Language language) {
-  constexpr std::string_view no_break = "\u00a0", isolate = "\u2068", end_isolate = "\u2069";
+  constexpr std::string_view no_break = "\u00a0";
   // About half a line of the narrowest place for it: longer parts may have to be broken.
   constexpr std::size_t most_unbroken = 40;
   const std::string_view separator = mix_words(language).list_separator;

@@ -46,6 +46,13 @@ enum class Text : std::uint8_t {
   unsigned_pack,
   no_devices,
   no_errors,
+  new_paints,     ///< {}: their packs
+  known_paints,   ///< {}: their packs
+  packs_refused,  ///< {}: how many
+  nothing_came,   ///< from a stick
+  last_stick,
+  stored,
+  already_there,
   serial,  ///< {}: number
   brightness,
   test_pattern,
@@ -75,6 +82,8 @@ enum class Text : std::uint8_t {
   waiting,
   refused,
   gone,
+  one_event,
+  events,  ///< {}: how many
   count_,
 };
 
@@ -83,6 +92,8 @@ inline constexpr int languages = 3;
 [[nodiscard]] std::string_view text(Text what, Language language);
 /// The text with "{}" replaced by a number.
 [[nodiscard]] std::string text_with(Text what, Language language, long long number);
+/// The same by a machine's words (a pack's name), which keep their own direction.
+[[nodiscard]] std::string text_with(Text what, Language language, std::string_view words);
 
 /// Words of a mix's name.
 [[nodiscard]] packs::MixWords mix_words(Language language);

@@ -147,6 +147,46 @@ int interface_cost(kiosk::Stage& stage, kiosk::Log& log) {
   return 0;
 }
 
+/// What the dealer's brightness costs: dimmed by the overlay, by the pass that takes pictures to the panel, and not at
+/// all. The three take turns, so that whatever else the machine does falls on all of them.
+int dimming_cost(kiosk::Output& output, kiosk::Stage& stage, kiosk::Log& log) {
+  constexpr int rounds = 150;
+  kiosk::InterfaceSettings settings = still_settings();
+  settings.experience.brightness = 0.7;
+  auto opened = kiosk::Interface::create(stage, settings, log);
+  if (!opened) return failed(opened.error());
+  kiosk::Interface& interface = **opened;
+  while (interface.wants_swatch()) interface.make_swatch();
+  (void)interface.begin_visit(1000.0);
+  struct Way {
+    const char* name;
+    kiosk::Interface::Dimming dimming;
+    float brightness;
+    std::vector<double> ms;
+  };
+  using Dimming = kiosk::Interface::Dimming;
+  std::array<Way, 3> ways{{{"not dimmed", Dimming::later, 1.0f, {}},
+                           {"dimmed by the overlay", Dimming::here, 1.0f, {}},
+                           {"dimmed by the panel's pass", Dimming::later, interface.brightness(), {}}}};
+  for (int k = 0; k < rounds; ++k)
+    for (Way& way : ways) {
+      const double began = kiosk::monotonic_ms();
+      (void)output.set_brightness(way.brightness);
+      const auto composed = interface.compose(stage.framebuffer(), way.dimming);
+      if (!composed) return failed(composed.error());
+      if (auto presented = output.present(**composed); !presented) return failed(presented.error());
+      stage.context().gl().Finish();
+      way.ms.push_back(kiosk::monotonic_ms() - began);
+    }
+  (void)output.set_brightness(1.0f);
+  const double plain = median(ways[0].ms);
+  for (Way& way : ways) {
+    const double ms = median(way.ms);
+    std::printf("%-30s n %d: %.2f ms from picture to panel, ratio %.3f\n", way.name, rounds, ms, ms / plain);
+  }
+  return 0;
+}
+
 int answer_times(kiosk::Output& output, kiosk::Stage& stage, kiosk::Log& log, const Case& it) {
   auto interface = kiosk::Interface::create(stage, still_settings(), log);
   if (!interface) return failed(interface.error());
@@ -214,6 +254,7 @@ int run(const char* pack_path, const char* scene_path) {
                                     std::move(*scene));
   if (!stage) return failed(stage.error());
   if (const int code = interface_cost(**stage, log); code != 0) return code;
+  if (const int code = dimming_cost(**output, **stage, log); code != 0) return code;
   // A drag, taps into a picture that is being refined, and the first touch after a rest.
   for (const Case& it :
        {Case{"a drag, an event every 8 ms", 8.0, 8.0, 1500}, Case{"while refining", 400.0, 2500.0, 40}})

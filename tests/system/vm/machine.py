@@ -5,6 +5,7 @@ Machine is one disk that may be switched on many times. Only the standard librar
 process that never outlives this one. Every wait has a limit and raises Failure with what was waited for.
 """
 import ctypes
+import hashlib
 import json
 import os
 import pathlib
@@ -86,6 +87,26 @@ class Picture:
         return different / (self.width * self.height)
 
 
+def make_stick(image, folder, partitioned):
+    """Writes a FAT32 disk with the files of `folder` into the file `image`, without a mount."""
+    sector, start = 512, 2048 if partitioned else 0  # where sticks are sold with their partition: at 1 MiB
+    # FAT32 is what it is by having more than 65,525 clusters: 32 MiB and some of one sector each.
+    files = sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
+    sectors = (files + (40 << 20)) // sector
+    image.unlink(missing_ok=True)
+    with open(image, "wb") as disk:
+        disk.truncate((start + sectors) * sector)
+        if partitioned:
+            # One entry of type 0x0c, FAT32 by sector numbers; those by cylinders say "see the others".
+            entry = struct.pack("<B3sB3sII", 0, b"\xfe\xff\xff", 0x0C, b"\xfe\xff\xff", start, sectors)
+            disk.write(bytes(446) + entry + bytes(48) + b"\x55\xaa")
+    where = {"PATH": "/usr/sbin:/sbin:/usr/bin:/bin", "MTOOLS_SKIP_CHECK": "1"}
+    subprocess.run(["mkfs.vfat", "-F", "32", "-s", "1", "-n", "STICK", f"--offset={start}", image, str(sectors // 2)],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=where)
+    subprocess.run(["mcopy", "-s", "-o", "-Q", "-i", f"{image}@@{start * sector}", *sorted(folder.iterdir()), "::/"], check=True,
+                   stdin=subprocess.DEVNULL, env=where)
+
+
 def _die_with_parent():
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     os.setpgid(0, 0)
@@ -107,6 +128,7 @@ class Machine:
         self.process = self._qmp = self._agent = None
         self._next_id, self._qmp_buffer, self._agent_buffer = 1, b"", b""
         self.events = []
+        self._sticks = {}  # digests of those that are plugged in, by name
         self.started_at = 0.0
         self.boots = 0
         self.work.mkdir(parents=True, exist_ok=True)
@@ -186,6 +208,7 @@ class Machine:
             if connection is not None:
                 connection.close()
         self.process = self._qmp = self._agent = None
+        self._sticks = {}
 
     def up_s(self):
         """Seconds since it was switched on."""
@@ -240,7 +263,8 @@ class Machine:
         return self.run(command, timeout_s, check=True).out.rstrip("\n")
 
     def put(self, path, data, mode="644"):
-        self.run(f"cat > '{path}' && chmod {mode} '{path}'", data=data, check=True)
+        """It is on the disk when this returns: a machine that is killed later has it."""
+        self.run(f"cat > '{path}' && chmod {mode} '{path}' && sync '{path}'", data=data, check=True)
 
     def get(self, path):
         return self.run(f"cat '{path}'", check=True).raw
@@ -377,17 +401,26 @@ class Machine:
         self.until(f"USB device {ident} is gone", 30.0, gone)
         self.events = [e for e in self.events if e["data"].get("device") != ident]
 
-    def stick_plug(self, ident, folder):
-        """A USB stick with one FAT partition that holds a host folder's files; nothing can be written to it. The emulator
-        makes the file system up, so that no host needs tools for one."""
-        self.qmp("blockdev-add", driver="vvfat", node_name=f"{ident}-disk", dir=str(folder), fat_type=16, floppy=False,
-                 rw=False, read_only=True)
+    def stick_plug(self, ident, folder, partitioned=True):
+        """A USB stick with the files of a host folder, as sticks are sold: FAT32, in a partition (or on the whole stick).
+        It can be written to; stick_pull says whether anybody has."""
+        image = self.stick_image(ident)
+        make_stick(image, pathlib.Path(folder), partitioned)
+        self._sticks[ident] = hashlib.sha256(image.read_bytes()).digest()
+        self.qmp("blockdev-add", driver="raw", node_name=f"{ident}-disk", file={"driver": "file", "filename": str(image)})
         self.qmp("device_add", driver="usb-storage", id=ident, bus="usb.0", drive=f"{ident}-disk", removable=True)
 
     def stick_pull(self, ident):
-        """Without asking anybody, as visitors do."""
+        """Without asking anybody, as visitors do. True: nothing was written to it."""
         self.usb_unplug(ident)
         self.qmp("blockdev-del", node_name=f"{ident}-disk")
+        image = self.stick_image(ident)
+        same = hashlib.sha256(image.read_bytes()).digest() == self._sticks.pop(ident)
+        image.unlink()
+        return same
+
+    def stick_image(self, ident):
+        return self.work / f"{ident}.img"
 
     # ---- traces for whoever must find out why
 
