@@ -1,6 +1,7 @@
 """Runs the system tests: builds or finds the root image, packs the software under test, boots, prints one line a test.
 
-Usage: run.py BUILD_DIR [PATTERN...]   (patterns: only tests whose names contain one)
+Usage: run.py BUILD_DIR [--remember] [PATTERN...]   (patterns: only tests whose names contain one)
+--remember: what has passed with the same inputs (passed.py) is told again, not run again; LACKWERK_FRESH=1 runs it.
 Exit codes: 0 all passed, 1 one failed, 77 nothing could run (1 when LACKWERK_REQUIRE_SYSTEM is set). A single test that
 cannot run says SKIPPED and its reason, and counts as failed when LACKWERK_REQUIRE_SYSTEM is set.
 """
@@ -14,6 +15,7 @@ import time
 import traceback
 
 sys.dont_write_bytecode = True
+import passed  # noqa: E402
 import payload  # noqa: E402
 from machine import Failure, Machine  # noqa: E402
 from testing import TESTS, Room, Skip  # noqa: E402
@@ -46,13 +48,19 @@ def main():
     if len(sys.argv) < 2:
         print(__doc__)
         return 2
-    build, patterns = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:]
+    build, patterns = pathlib.Path(sys.argv[1]).resolve(), [p for p in sys.argv[2:] if p != "--remember"]
+    remembers = "--remember" in sys.argv
     for tool, package in (("qemu-system-x86_64", "qemu-system-x86"), ("qemu-img", "qemu-utils")):
         if shutil.which(tool) is None:
             give_up(f"no {tool}; install {package}")
     started = time.monotonic()
     image = root_image()
     print(f"      root image {image.name}, {time.monotonic() - started:.1f} s", flush=True)
+    inputs = passed.key(build, image, patterns)
+    before = passed.recall(inputs) if remembers else None
+    if before is not None:
+        print(before + "LACKWERK_FRESH=1 runs it again")
+        return 0
     logs = build / "vm-logs"
     shutil.rmtree(logs, ignore_errors=True)
     logs.mkdir(parents=True)
@@ -69,7 +77,11 @@ def main():
                 files[f"var/lib/lackwerk/{name}"] = demo / name
         units = payload.make(disk, build, payload.build_helpers(build / "vm-guest"), files)
         room = Room(Machine(image, disk, work), build, demo if len(files) == 5 else None, units, logs)
-        return run_all(room, patterns, logs, started)
+        code = run_all(room, patterns, logs, started)
+        # Skipped tests are not remembered: what is missing may be there next time.
+        if code == 0 and remembers and "SKIPPED" not in "".join(room.figures):
+            passed.remember(inputs, "".join(line + "\n" for line in room.figures))
+        return code
 
 
 def run_all(room, patterns, logs, started):
@@ -93,15 +105,15 @@ def run_all(room, patterns, logs, started):
             except Exception:  # a slip in a test must not leave the emulator running or hide the other results
                 verdict, why = "FAIL", traceback.format_exc()
             counts[verdict] += 1
-            print(f"{verdict:<7} {function.__name__} {time.monotonic() - began:.1f} s{': ' + why if why else ''}", flush=True)
+            room.say(f"{verdict:<7} {function.__name__} {time.monotonic() - began:.1f} s{': ' + why if why else ''}")
             if verdict == "FAIL":
                 machine.collect(logs / function.__name__)
                 # The next test starts from a machine that was switched on freshly.
                 machine.kill()
     finally:
         machine.kill()
-    print(f"{counts['PASS']} passed, {counts['FAIL']} failed, {counts['SKIPPED']} skipped in "
-          f"{time.monotonic() - started:.0f} s, {machine.boots} boots; logs in {logs}")
+    room.say(f"{counts['PASS']} passed, {counts['FAIL']} failed, {counts['SKIPPED']} skipped in "
+             f"{time.monotonic() - started:.0f} s, {machine.boots} boots; logs in {logs}")
     return 1 if counts["FAIL"] or (REQUIRED and counts["SKIPPED"]) else 0
 
 

@@ -29,9 +29,12 @@ class Room:
         self.cold_start_s = None  # of the kiosk: from start to first picture, measured in this boot
         self.figures = []         # lines for the report
 
+    def say(self, line):
+        self.figures.append(line)
+        print(line, flush=True)
+
     def note(self, text):
-        self.figures.append(text)
-        print(f"      {text}", flush=True)
+        self.say(f"      {text}")
 
     def timed(self, what, action):
         started = time.monotonic()
