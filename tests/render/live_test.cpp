@@ -16,7 +16,6 @@
 namespace lackwerk::test {
 namespace {
 
-using input::Control;
 using input::ControlKind;
 using kiosk::OutputState;
 
