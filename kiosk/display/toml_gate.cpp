@@ -20,13 +20,23 @@ bool is_odd_header(std::string_view line) {
   return at == std::string_view::npos || name_begins.find(line[at]) == std::string_view::npos;
 }
 
+/// Whether a quote at `at` cannot be taken for a part of a number: toml++ reads what begins like one up to the next
+/// blank or comma, and asks of each letter in it whether it is a blank.
+bool stands_alone(std::string_view line, std::size_t at) {
+  while (at > 0 && line[at - 1] == '[') --at;
+  return at == 0 || line[at - 1] == ',' || blank.find(line[at - 1]) != std::string_view::npos;
+}
+
 const char* complaint(std::string_view line) {
   if (is_odd_header(line)) return "a table's name is expected after [";
   char quote = '\0';   // of the text that is open
   char before = '\0';  // the last that is no blank
+  bool alone = true;
   for (std::size_t k = 0; k < line.size(); ++k) {
     const char c = line[k];
     if (quote != '\0') {
+      if (!alone && static_cast<unsigned char>(c) >= 0x80)
+        return "a blank is expected before a text with letters beyond ASCII";
       if (c == '\\' && quote == '"')
         ++k;  // whatever it is, it ends nothing
       else if (c == quote)
@@ -44,6 +54,7 @@ const char* complaint(std::string_view line) {
       if (before != '\0' && std::string_view("=[,.").find(before) == std::string_view::npos)
         return "a text begins after =, [ or a comma";
       quote = c;
+      alone = stands_alone(line, k);
     } else if (static_cast<unsigned char>(c) >= 0x80) {
       return "letters beyond ASCII stand in texts and comments only";
     }
