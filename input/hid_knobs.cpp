@@ -9,6 +9,7 @@
 #include <ctime>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -88,7 +89,31 @@ struct HidKnobs::Port {
   bool pause(int ms);
   void say(State now, const std::string& why, bool problem, bool tell);
   bool stopping();
+
+  // ---- the kiosk's side, `mutex` held
+  [[nodiscard]] std::string_view listed_as() const;
 };
+
+/// DeviceStatus::state; empty: it is not listed.
+std::string_view HidKnobs::Port::listed_as() const {
+  switch (state) {
+    case State::left_alone:
+      break;
+    case State::ready:
+      return "ready";
+    case State::refused:
+      return "refused";
+    case State::gone:
+      return "gone";
+    case State::opening:
+      // Most of these turn out to be mice and keyboards; they are told when they turn out to be knobs.
+      return knob ? "waiting" : "";
+    case State::queued:
+    case State::waiting:
+      return "waiting";
+  }
+  return "";
+}
 
 bool HidKnobs::Port::stopping() {
   const std::lock_guard lock(mutex);
@@ -361,30 +386,12 @@ void HidKnobs::add_devices(std::vector<DeviceStatus>& out) const {
   for (const auto& port : ports_) {
     const std::lock_guard lock(port->mutex);
     if (port->stop) continue;  // unplugged; it is listed as gone in a moment
+    const std::string_view state = port->listed_as();
+    if (state.empty()) continue;
     const std::string where = port->detail.find(port->node.path) == std::string::npos
                                   ? port->node.path + (port->detail.empty() ? "" : ": " + port->detail)
                                   : port->detail;
-    switch (port->state) {
-      case Port::State::left_alone:
-        break;
-      case Port::State::ready:
-        out.push_back({port->name, "knob", "ready", where, port->heard});
-        break;
-      case Port::State::refused:
-        out.push_back({port->name, "knob", "refused", where, port->heard});
-        break;
-      case Port::State::gone:
-        out.push_back({port->name, "knob", "gone", where, port->heard});
-        break;
-      case Port::State::opening:
-        // Most of these turn out to be mice and keyboards; they are told when they turn out to be knobs.
-        if (port->knob) out.push_back({port->name, "knob", "waiting", where, port->heard});
-        break;
-      case Port::State::queued:
-      case Port::State::waiting:
-        out.push_back({port->name, "knob", "waiting", where, port->heard});
-        break;
-    }
+    out.push_back({port->name, "knob", std::string(state), where, port->heard});
   }
   out.insert(out.end(), gone_.begin(), gone_.end());
 }

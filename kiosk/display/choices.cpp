@@ -11,14 +11,13 @@
 
 #include "input/touch.hpp"
 #include "kiosk/display/interface_words.hpp"
+#include "kiosk/display/json_fields.hpp"
 #include "kiosk/display/pin_pad.hpp"
 
 namespace lackwerk::kiosk {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr double least_brightness = 0.2, most_brightness = 1.0;
+constexpr double most_brightness = 1.0;
 constexpr const char* language_key = "language";
 constexpr const char* beyond_key = "beyond";
 constexpr const char* motion_key = "reduced_motion";
@@ -30,59 +29,25 @@ constexpr const char* pin_until_key = "pin_locked_until_s";
 /// Seconds since 1970 that a clock may say: until the year 9999.
 constexpr double most_wall_s = 253'402'300'799.0;
 
-/// Reads one key after the other and keeps the first that is wrong.
-class Reader {
- public:
-  explicit Reader(const Json& from) : from_(from) {}
+void take(const JsonFields& fields, const char* key, ui::Language& to) {
+  const std::string* word = fields.text(key);
+  if (word == nullptr) return;
+  const auto named = language_of(*word);
+  named ? void(to = *named) : fields.refuse(key);
+}
 
-  void take(const char* key, ui::Language& to) {
-    const Json* value = find(key);
-    if (value == nullptr) return;
-    const auto named = value->is_string() ? language_of(value->get_ref<const std::string&>()) : std::nullopt;
-    named ? void(to = *named) : refuse(key);
+void take(const JsonFields& fields, const char* key, std::optional<input::CalibrationMatrix>& to) {
+  const nlohmann::json* value = fields.find(key);
+  if (value == nullptr) return;
+  if (value->is_null()) return to.reset();
+  input::CalibrationMatrix matrix{};
+  if (!value->is_array() || value->size() != matrix.size()) return fields.refuse(key);
+  for (std::size_t k = 0; k < matrix.size(); ++k) {
+    if (!(*value)[k].is_number()) return fields.refuse(key);
+    matrix[k] = (*value)[k].get<double>();
   }
-  void take(const char* key, bool& to) {
-    const Json* value = find(key);
-    if (value == nullptr) return;
-    value->is_boolean() ? void(to = value->get<bool>()) : refuse(key);
-  }
-  void take(const char* key, double& to, double least, double most) {
-    const Json* value = find(key);
-    if (value == nullptr) return;
-    const double number = value->is_number() ? value->get<double>() : least - 1.0;
-    number >= least&& number <= most ? void(to = number) : refuse(key);
-  }
-  void take(const char* key, int& to, int least, int most) {
-    double number = to;
-    take(key, number, least, most);
-    to = static_cast<int>(number);
-  }
-  void take(const char* key, std::optional<input::CalibrationMatrix>& to) {
-    const Json* value = find(key);
-    if (value == nullptr) return;
-    if (value->is_null()) return to.reset();
-    input::CalibrationMatrix matrix{};
-    if (!value->is_array() || value->size() != matrix.size()) return refuse(key);
-    for (std::size_t k = 0; k < matrix.size(); ++k) {
-      if (!(*value)[k].is_number()) return refuse(key);
-      matrix[k] = (*value)[k].get<double>();
-    }
-    input::is_usable(matrix) ? void(to = matrix) : refuse(key);
-  }
-
-  [[nodiscard]] const std::optional<std::string>& wrong() const { return wrong_; }
-
- private:
-  [[nodiscard]] const Json* find(const char* key) const {
-    const auto at = from_.find(key);
-    return at == from_.end() ? nullptr : &*at;
-  }
-  void refuse(const char* key) {
-    if (!wrong_) wrong_ = key;
-  }
-  const Json& from_;
-  std::optional<std::string> wrong_;
-};
+  input::is_usable(matrix) ? void(to = matrix) : fields.refuse(key);
+}
 
 /// A descriptor that is closed.
 class Descriptor {
@@ -136,33 +101,34 @@ ExperienceSettings with_choices(ExperienceSettings settings, const DealerChoices
 }
 
 std::string text_of(const DealerChoices& choices) {
-  Json out{{language_key, word_of(choices.language)},
-           {beyond_key, choices.beyond_allowed},
-           {motion_key, choices.reduced_motion},
-           {brightness_key, choices.brightness},
-           {calibration_key, nullptr},
-           {pin_wrong_key, choices.pin.wrong},
-           {pin_lock_key, choices.pin.lock_s},
-           {pin_until_key, choices.pin.locked_until_s}};
+  nlohmann::ordered_json out{{language_key, word_of(choices.language)},
+                             {beyond_key, choices.beyond_allowed},
+                             {motion_key, choices.reduced_motion},
+                             {brightness_key, choices.brightness},
+                             {calibration_key, nullptr},
+                             {pin_wrong_key, choices.pin.wrong},
+                             {pin_lock_key, choices.pin.lock_s},
+                             {pin_until_key, choices.pin.locked_until_s}};
   if (choices.calibration) out[calibration_key] = *choices.calibration;
   return out.dump(2) + "\n";
 }
 
 Result<DealerChoices> parse_choices(const std::string& text, const std::string& file, const DealerChoices& defaults) {
   if (text.size() > max_choices_bytes) return fail(file, "", "is too long for what it may hold", discard_remedy);
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return fail(file, "", "is damaged: no JSON object", discard_remedy);
+  const auto json = parse_object(text, file, discard_remedy);
+  if (!json) return tl::unexpected(json.error());
   DealerChoices out = defaults;
-  Reader reader(json);
-  reader.take(language_key, out.language);
-  reader.take(beyond_key, out.beyond_allowed);
-  reader.take(motion_key, out.reduced_motion);
-  reader.take(brightness_key, out.brightness, least_brightness, most_brightness);
-  reader.take(calibration_key, out.calibration);
-  reader.take(pin_wrong_key, out.pin.wrong, 0, pin_attempts - 1);
-  reader.take(pin_lock_key, out.pin.lock_s, 0.0, longest_lock_s);
-  reader.take(pin_until_key, out.pin.locked_until_s, 0.0, most_wall_s);
-  if (reader.wrong()) return fail(file, *reader.wrong(), "is not a value it can have", discard_remedy);
+  std::string wrong;
+  const JsonFields fields(*json, wrong);
+  take(fields, language_key, out.language);
+  fields.take(beyond_key, out.beyond_allowed);
+  fields.take(motion_key, out.reduced_motion);
+  fields.take(brightness_key, out.brightness, least_brightness, most_brightness);
+  take(fields, calibration_key, out.calibration);
+  fields.take(pin_wrong_key, out.pin.wrong, 0, pin_attempts - 1);
+  fields.take(pin_lock_key, out.pin.lock_s, 0.0, longest_lock_s);
+  fields.take(pin_until_key, out.pin.locked_until_s, 0.0, most_wall_s);
+  if (!wrong.empty()) return fail(file, wrong, "is not a value it can have", discard_remedy);
   return out;
 }
 

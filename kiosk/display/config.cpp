@@ -13,7 +13,7 @@
 #include "kiosk/display/interface_words.hpp"
 #include "kiosk/display/pin.hpp"
 #include "kiosk/display/stage.hpp"
-#include "kiosk/display/toml_gate.hpp"
+#include "packs/toml_gate.hpp"
 
 namespace lackwerk::kiosk {
 namespace {
@@ -349,7 +349,7 @@ ConfigReading parse_config(std::string_view text, const std::string& file) {
     reader.wrong(0, "", "is longer than 64 KiB", "give a TOML text file");
     return reader.finish();
   }
-  if (const auto refused = refused_by_gate(text)) {
+  if (const auto refused = packs::refused_by_gate(text)) {
     reader.wrong(refused->line, "", refused->what, "mend the TOML syntax");
     return reader.finish();
   }

@@ -16,8 +16,6 @@ constexpr double max_packs = 64.0;
 /// Faster than any panel.
 constexpr double max_refresh_hz = 1000.0;
 constexpr double max_frame_ms = 1000.0;
-/// Darker than this a visitor takes the panel for broken.
-constexpr double least_brightness = 0.2;
 
 std::vector<std::string> seat_words() { return {"auto", "libseat", "direct"}; }
 

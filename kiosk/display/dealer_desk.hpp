@@ -14,7 +14,7 @@
 
 namespace lackwerk::kiosk {
 
-inline constexpr double brightness_step = 0.05, least_brightness = 0.2;
+inline constexpr double brightness_step = 0.05;
 
 class DealerDesk {
  public:

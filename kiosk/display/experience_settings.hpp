@@ -14,6 +14,9 @@
 
 namespace lackwerk::kiosk {
 
+/// Of the panel, as a share: darker, a dealer would not find the way back.
+inline constexpr double least_brightness = 0.2;
+
 /// Minutes after midnight, local time; from == to: never. from > to goes over midnight.
 struct NightHours {
   int from = 0, to = 0;
@@ -37,7 +40,7 @@ struct ExperienceSettings {
   bool beyond_allowed = false;
   bool reduced_motion = false;  ///< no inertia, no tour: the attract screen stands still but for its paints
   bool tour = true;             ///< false: the attract screen stands still on the first paint
-  double brightness = 1.0;      ///< [0.2, 1]
+  double brightness = 1.0;      ///< [least_brightness, 1]
   bool has_pin = false;         ///< without one there is no dealer's screen
   std::uint64_t seed = 1;       ///< of the attract tour
   /// What the touch screens' reports go through today: a new calibration comes after it.

@@ -11,9 +11,9 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "packs/signed_pack.hpp"
 #include "packs/storage.hpp"
@@ -150,18 +150,6 @@ std::int64_t now_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-const char* outcome_name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::stored:
-      return "stored";
-    case Outcome::already_there:
-      return "already there";
-    case Outcome::refused:
-      break;
-  }
-  return "refused";
-}
-
 /// Names are whatever a stick says: on one line, and nothing that a terminal obeys.
 std::string on_one_line(std::string text) {
   std::replace_if(
@@ -170,15 +158,6 @@ std::string on_one_line(std::string text) {
 }
 
 }  // namespace
-
-bool ImportReport::has_news() const {
-  return std::any_of(files.begin(), files.end(), [](const ImportedFile& f) { return f.outcome == Outcome::stored; });
-}
-
-bool ImportReport::is_good() const {
-  return error.empty() &&
-         std::none_of(files.begin(), files.end(), [](const ImportedFile& f) { return f.outcome == Outcome::refused; });
-}
 
 ImportReport import_folder(const std::filesystem::path& stick, packs::Store& store, const packs::Keyring& keyring,
                            const ImportLimits& limits) {
@@ -223,38 +202,6 @@ std::string import_lines(const ImportReport& report) {
                        (file.outcome == Outcome::stored ? "in use now" : "there already") + ", key " + file.key + "\n";
   if (!report.error.empty()) lines += report.error + "\n";
   return lines;
-}
-
-std::string import_json(const ImportReport& report) {
-  nlohmann::ordered_json out{{"time_s", report.time_s},
-                             {"good", report.is_good()},
-                             {"error", report.error},
-                             {"files", nlohmann::ordered_json::array()}};
-  for (const ImportedFile& file : report.files) {
-    nlohmann::ordered_json entry{{"file", file.file}, {"result", outcome_name(file.outcome)}};
-    if (file.outcome == Outcome::refused)
-      entry["error"] = file.error;
-    else
-      entry.update({{"id", file.id}, {"serial", file.serial}, {"key", file.key}});
-    out["files"].push_back(std::move(entry));
-  }
-  // Names need not be UTF-8.
-  return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-Result<void> write_import(const std::filesystem::path& folder, const ImportReport& report) {
-  const std::string text = import_json(report), name = import_file_name;
-  // Of each process its own: two sticks may be imported at once.
-  const std::string fresh = "." + name + "." + std::to_string(::getpid());
-  const auto disk = packs::open_disk(folder);
-  auto writer = disk->create(fresh);
-  if (!writer) return tl::unexpected(writer.error());
-  auto done = (*writer)->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  if (done) done = disk->rename(fresh, name);
-  if (!done) {
-    [[maybe_unused]] const auto removed = disk->remove_file(fresh);
-  }
-  return done;
 }
 
 Result<bool> import_stick(const ImportPlaces& places) {

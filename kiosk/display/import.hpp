@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "core/error.hpp"
+#include "kiosk/display/import_report.hpp"
 #include "packs/keyring.hpp"
 #include "packs/sealed_file.hpp"
 #include "packs/store.hpp"
@@ -19,29 +19,10 @@ namespace lackwerk::kiosk {
 
 /// The one folder of a stick that is looked at; in capitals too, as some systems write short names.
 inline constexpr const char* stick_folder = "lackwerk";
-inline constexpr const char* import_file_name = "import.json";
 
 struct ImportLimits {
   std::size_t most_packs = 16;                                  ///< the first by name
   std::uint64_t most_pack_bytes = packs::max_paint_pack_bytes;  ///< of each
-};
-
-struct ImportedFile {
-  enum class Outcome { stored, already_there, refused };
-  std::string file;  ///< its name, without the folder
-  Outcome outcome = Outcome::refused;
-  std::string id, key;  ///< as verified; empty where it was refused
-  std::uint64_t serial = 0;
-  std::string error;  ///< one line; empty where it was not refused
-};
-
-struct ImportReport {
-  std::vector<ImportedFile> files;  ///< by name
-  std::string error;                ///< of the stick as a whole; empty where there is none
-  std::int64_t time_s = 0;          ///< of the wall clock, seconds since 1970
-  /// Whether anything is in use now that was not before.
-  [[nodiscard]] bool has_news() const;
-  [[nodiscard]] bool is_good() const;
 };
 
 /// Every NAME.lwp (or .LWP) of `stick`/lackwerk that is a regular file with a regular NAME.lwp.minisig beside it goes
@@ -51,10 +32,6 @@ struct ImportReport {
 
 /// A line for each file, and one for the stick where that has a fault.
 [[nodiscard]] std::string import_lines(const ImportReport& report);
-/// What the kiosk shows for some seconds; keys as in docs/packs-and-store.md.
-[[nodiscard]] std::string import_json(const ImportReport& report);
-/// Replaces `folder`/import.json in one step, so that nobody reads half of it.
-[[nodiscard]] Result<void> write_import(const std::filesystem::path& folder, const ImportReport& report);
 
 struct ImportPlaces {
   std::filesystem::path stick, store, keyring;

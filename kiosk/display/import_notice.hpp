@@ -5,23 +5,16 @@
 // that folder and the last report; one thread.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "core/error.hpp"
 #include "kiosk/display/folder_watch.hpp"
-#include "kiosk/display/import.hpp"
+#include "kiosk/display/import_report.hpp"
 #include "kiosk/display/ui/model.hpp"
 
 namespace lackwerk::kiosk {
-
-/// More than sixteen packs with the longest names and errors need.
-inline constexpr std::size_t max_import_bytes = 65536;
-inline constexpr std::size_t max_import_files = 64;
-/// Of each text that is shown; the rest is left out.
-inline constexpr std::size_t max_import_text_bytes = 256;
 
 class ImportNotice {
  public:
@@ -43,10 +36,6 @@ class ImportNotice {
   std::optional<double> started_ms_;  ///< of the first poll()
   std::optional<ImportReport> last_;
 };
-
-/// As import_json() writes it; unknown keys of a newer one are passed over, texts are cut to max_import_text_bytes and
-/// hold nothing that changes lines or directions. `file` is for errors: no JSON, a value that is none, too many files.
-[[nodiscard]] Result<ImportReport> parse_import(const std::string& text, const std::string& file);
 
 /// What a visitor's screen says of it.
 [[nodiscard]] ui::Toast toast_of(const ImportReport& report);

@@ -100,12 +100,6 @@ double closeness(const packs::Camera& camera) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-gles::Lighting lighting_of(const packs::Camera& camera, int light, double dimmer) {
-  std::array<double, 3> shares{};
-  shares[static_cast<std::size_t>(std::clamp(light, 0, 2))] = 1.0;
-  return lighting_of(camera, shares, dimmer);
-}
-
 gles::Lighting lighting_of(const packs::Camera& camera, const std::array<double, 3>& shares, double dimmer) {
   if (usual_mood(camera.name) == Mood::stripes) return lighting_of(Mood::stripes);
   const std::array<Scheme, 3> moods = schemes();

@@ -34,11 +34,10 @@ enum class Light {
 /// How near a camera is to the paint: 0: a whole car, 1: single flakes can be seen; continuous in between.
 [[nodiscard]] double closeness(const packs::Camera& camera);
 
-/// The light a visitor has chosen. `light`: a number of Light; `dimmer`: [0, 1], day to showroom night. Near the paint
-/// a hard light comes in by itself, whatever was chosen: in soft light flakes do not sparkle. Continuous in `dimmer`
-/// and camera. By day in the studio it is the usual mood of the scene's far and macro cameras.
-[[nodiscard]] gles::Lighting lighting_of(const packs::Camera& camera, int light, double dimmer);
-/// The same between moods: `shares` of each, at least 0, sum 1. Continuous in them; one alone is that light exactly.
+/// The light a visitor has chosen. `shares` of each Light by its number, at least 0, sum 1: one alone is that light
+/// exactly; `dimmer`: [0, 1], day to showroom night. Near the paint a hard light comes in by itself, whatever was
+/// chosen: in soft light flakes do not sparkle. Continuous in shares, `dimmer` and camera. By day in the studio it is
+/// the usual mood of the scene's far and macro cameras.
 [[nodiscard]] gles::Lighting lighting_of(const packs::Camera& camera, const std::array<double, 3>& shares,
                                          double dimmer);
 

@@ -11,6 +11,7 @@
 
 #include "kiosk/display/config_keys.hpp"
 #include "kiosk/display/config_text.hpp"
+#include "packs/toml_gate.hpp"
 
 namespace lackwerk::kiosk {
 namespace {
@@ -340,6 +341,21 @@ TEST(Config, TextsAndCommentsMayHoldAnyLetters) {
   EXPECT_EQ(reading.config.scene,
             "L\xc3\xa4"
             "cke/\"blau\".lws");
+}
+
+// toml++ looks ahead to the next blank or comma for a number, into a text that has no blank before it.
+TEST(Config, TextsWithLettersBeyondAsciiStandByThemselves) {
+  for (const char* text : {"name=\"ä\"", "name='ä'", "x=[\"ä\"]", "x = [\"a\",\"ö\"]\ny=\"aä\"", "a.\"ä\" = 1"}) {
+    const auto refused = packs::refused_by_gate("# ok\n" + std::string(text));
+    ASSERT_TRUE(refused) << text;
+    EXPECT_EQ(refused->line, std::string_view(text).find('\n') == std::string_view::npos ? 2u : 3u) << text;
+    EXPECT_NE(std::string_view(refused->what).find("beyond ASCII"), std::string_view::npos) << text;
+  }
+  for (const char* text : {"name = \"ä\"", "name =\t'ä'", "x = [\"ä\", \"ö\"]", "x = [[\"ä\"],[\"ö\"]]",
+                           "x = [\n\"ä\",\"ö\"]", "\"ä\" = 1", "name=\"a\" # ä", "name=\"\\u00e4\""})
+    EXPECT_FALSE(packs::refused_by_gate(text)) << text;
+  EXPECT_EQ(parse("scene=\"ä\"").errors.size(), 1u);
+  EXPECT_EQ(parse("scene = \"ä\"").config.scene, "ä");
 }
 
 TEST(Config, SizesAreBounded) {

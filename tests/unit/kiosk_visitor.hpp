@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -194,5 +196,21 @@ class Visitor {
   Experience experience;
   Experience::Changes all;  ///< of advance(), since the test last cleared it
 };
+
+/// A visitor who has come to the show, with the puck and the view as they are at first.
+inline Visitor in_show(std::size_t paints = 3, ExperienceSettings settings = some_settings()) {
+  settings.tour = false;
+  Visitor visitor(paints, settings);
+  visitor.begin();
+  EXPECT_EQ(visitor.model().screen, ui::Screen::show);
+  return visitor;
+}
+
+/// The most that two mixes of as many paints differ in.
+inline double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
+  return most;
+}
 
 }  // namespace lackwerk::kiosk

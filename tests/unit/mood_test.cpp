@@ -7,6 +7,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "kiosk/display/state.hpp"
+
 namespace lackwerk::kiosk {
 namespace {
 
@@ -18,7 +20,7 @@ TEST(Mood, ByDayInTheStudioTheUsualCamerasHaveTheirUsualLight) {
   const packs::Camera hero = camera("hero", 5300.0f, 28.0f), macro = camera("macro", 150.0f, 13.0f),
                       stripe = camera("stripe", 3100.0f, 30.0f);
   for (const packs::Camera& from : {hero, macro, stripe})
-    EXPECT_EQ(lighting_of(from, 0, 0.0), lighting_of(usual_mood(from.name))) << from.name;
+    EXPECT_EQ(lighting_of(from, light_alone(0), 0.0), lighting_of(usual_mood(from.name))) << from.name;
 }
 
 TEST(Mood, ClosenessRisesSteadilyFromTheCarToTheFlakes) {
@@ -42,14 +44,14 @@ TEST(Mood, NothingJumpsOnTheWayInAndWhileDimming) {
                      glm::length(a.backdrop - b.backdrop), std::abs(a.lamp_glow - b.lamp_glow)});
   };
   for (int light = 0; light < 3; ++light) {
-    gles::Lighting before = lighting_of(camera("", 2000.0f, 28.0f), light, 0.0);
+    gles::Lighting before = lighting_of(camera("", 2000.0f, 28.0f), light_alone(light), 0.0);
     for (float distance = 2000.0f; distance > 50.0f; distance *= 0.99f) {
-      const gles::Lighting now = lighting_of(camera("", distance, 28.0f), light, 0.0);
+      const gles::Lighting now = lighting_of(camera("", distance, 28.0f), light_alone(light), 0.0);
       EXPECT_LT(differ(before, now), 0.05f) << light << " at " << distance;
       before = now;
     }
     for (double dimmer = 0.0; dimmer <= 1.0; dimmer += 0.01) {
-      const gles::Lighting now = lighting_of(camera("", 50.0f, 28.0f), light, dimmer);
+      const gles::Lighting now = lighting_of(camera("", 50.0f, 28.0f), light_alone(light), dimmer);
       EXPECT_LT(differ(before, now), 0.05f) << light << " at " << dimmer;
       EXPECT_LE(now.environment_gain, before.environment_gain);
       before = now;
@@ -71,8 +73,8 @@ TEST(Mood, SharesBlendWithoutAJumpAndOneAloneIsThatLight) {
       for (int b = 0; b < 3; ++b) {
         std::array<double, 3> shares{};
         shares[static_cast<std::size_t>(a)] = 1.0;
-        EXPECT_EQ(lighting_of(from, shares, 0.3), lighting_of(from, a, 0.3));
-        gles::Lighting before = lighting_of(from, a, 0.3);
+        EXPECT_EQ(lighting_of(from, shares, 0.3), lighting_of(from, light_alone(a), 0.3));
+        gles::Lighting before = lighting_of(from, light_alone(a), 0.3);
         constexpr int steps = 200;
         for (int k = 1; k <= steps; ++k) {
           const double t = static_cast<double>(k) / steps;
@@ -83,17 +85,17 @@ TEST(Mood, SharesBlendWithoutAJumpAndOneAloneIsThatLight) {
           EXPECT_LT(apart(before, now), 0.05f) << a << " to " << b << " at " << t;
           before = now;
         }
-        EXPECT_EQ(before, lighting_of(from, b, 0.3));
+        EXPECT_EQ(before, lighting_of(from, light_alone(b), 0.3));
       }
   }
 }
 
 TEST(Mood, EachLightIsAnotherOneAndNumbersOutsideAreTheNearest) {
   const packs::Camera hero = camera("hero", 5300.0f, 28.0f);
-  EXPECT_NE(lighting_of(hero, 0, 0.0), lighting_of(hero, 1, 0.0));
-  EXPECT_NE(lighting_of(hero, 1, 0.0), lighting_of(hero, 2, 0.0));
-  EXPECT_EQ(lighting_of(hero, -4, -1.0), lighting_of(hero, 0, 0.0));
-  EXPECT_EQ(lighting_of(hero, 9, 2.0), lighting_of(hero, 2, 1.0));
+  EXPECT_NE(lighting_of(hero, light_alone(0), 0.0), lighting_of(hero, light_alone(1), 0.0));
+  EXPECT_NE(lighting_of(hero, light_alone(1), 0.0), lighting_of(hero, light_alone(2), 0.0));
+  EXPECT_EQ(lighting_of(hero, light_alone(-4), -1.0), lighting_of(hero, light_alone(0), 0.0));
+  EXPECT_EQ(lighting_of(hero, light_alone(9), 2.0), lighting_of(hero, light_alone(2), 1.0));
 }
 
 }  // namespace

@@ -126,6 +126,7 @@ TEST_F(Touch, AFingerGoesDownMovesAndEnds) {
   ASSERT_EQ(devices().size(), 1u);
   EXPECT_EQ(devices()[0].kind, "touch");
   EXPECT_EQ(devices()[0].state, "ready");
+  EXPECT_EQ(devices()[0].heard, 3u) << "down, move, up";
 }
 
 TEST_F(Touch, ContactsAreUniqueOverDevices) {
@@ -185,6 +186,7 @@ TEST_F(Touch, TenThousandEventsASecondBecomeOneMoveAFrame) {
     EXPECT_EQ(touch_->wake_at_ms(), never_ms);
   }
   EXPECT_EQ(sent, 10'000);
+  EXPECT_EQ(devices()[0].heard, 10'001u) << "merged, but heard";
 }
 
 TEST_F(Touch, RemovalCancelsWhatIsHeldAndOnlyThat) {
@@ -297,7 +299,9 @@ TEST_F(Touch, OnAnotherOutputItIsIgnoredAndThatIsSaid) {
   EXPECT_NE(said[1].text.find("bound to HDMI-A-2"), std::string::npos) << said[1].text;
   EXPECT_FALSE(said[0].problem);
   EXPECT_EQ(devices()[0].state, "refused");
+  EXPECT_EQ(devices()[0].heard, 0u) << "of another screen nothing counts";
   EXPECT_EQ(devices()[2].state, "ready");
+  EXPECT_EQ(devices()[2].heard, 1u);
   // The kiosk moves to the other output: that screen counts from now on, nothing is held by a stranger.
   touch_->set_output("HDMI-A-2");
   EXPECT_TRUE(read().empty());
@@ -334,6 +338,7 @@ TEST_F(Touch, AbsurdDevicesAreRefused) {
     EXPECT_TRUE(read().empty());
     ASSERT_EQ(devices().size(), 1u);
     EXPECT_EQ(devices()[0].state, "ready");
+    EXPECT_EQ(devices()[0].heard, 0u) << "nor does it inherit";
   }
   for (const int slots : {-1, 0, max_slots + 1}) {
     TouchDevice device = screen(1);

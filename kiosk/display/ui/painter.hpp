@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "kiosk/display/import.hpp"
+#include "kiosk/display/import_report.hpp"
 #include "kiosk/display/status.hpp"
 #include "kiosk/display/ui/content.hpp"
 #include "kiosk/display/ui/layout.hpp"

@@ -99,10 +99,21 @@ def device(room, name):
     return next((d for d in status(room).get("devices", []) if name in d["name"] and d["state"] == "ready"), None)
 
 
+def opened(room, name):
+    """The device, once the kiosk holds the node that is plugged in now: status.json may still tell of the one before,
+    whose node is deleted."""
+    found = device(room, name)
+    if found and found["detail"].startswith("/dev/"):
+        held = room.machine.run(f"readlink /proc/{pid(room)}/fd/* | grep -qxF '{found['detail']}'").code == 0
+        return found if held else None
+    return found
+
+
 def wait_device(room, name, there=True):
-    what = f"'{name}' is {'in' if there else 'gone from'} status.json"
+    what = f"'{name}' is {'open' if there else 'gone from status.json'}"
     try:
-        return room.machine.until(what, ANSWER_S, lambda: (device(room, name) is not None) == there) and device(room, name)
+        found = room.machine.until(what, ANSWER_S, lambda: opened(room, name) if there else device(room, name) is None)
+        return found if there else None
     except Failure as problem:
         raise Failure(f"{problem}: devices are {status(room).get('devices')}") from problem
 
@@ -308,19 +319,19 @@ def knob_heard(room):
     return next((d["heard"] for d in status(room).get("devices", []) if d["kind"] == "knob" and d["state"] == "ready"), 0)
 
 
-def turns_the_morph(room, fifo, name):
-    """A quarter of the way to the next paint and back. Where nobody is, the first turn begins the visit; it also brings
-    the puck to the knob's path."""
+def turns_the_morph(room, fifo, name, units=2):
+    """Thirty turns of so many units and back: several detents, for near a paint the path is flat. Where nobody is, the
+    first turn begins the visit; it also brings the puck to the knob's path."""
     heard = knob_heard(room)
     tell(room.machine, fifo, "turn 1")
     # In a visit this turn may change nothing: only the kiosk's count says that it has arrived.
     room.machine.until(f"{name} is heard", ANSWER_S, lambda: knob_heard(room) != heard)
     wait_screen(room, "show", f"{name} begins a visit")
     before = settled_weights(room)
-    tell(room.machine, fifo, "turns 30 2 20")
+    tell(room.machine, fifo, f"turns 30 {units} 20")
     room.machine.until(f"{name} turns the morph", ANSWER_S, lambda: not near(weights(room), before, 0.01))
     moved = settled_weights(room)
-    tell(room.machine, fifo, "turns 30 -2 20")
+    tell(room.machine, fifo, f"turns 30 {-units} 20")
     room.machine.until(f"{name} turns it back", ANSWER_S, lambda: near(weights(room), before, 0.01))
     return moved
 
@@ -329,10 +340,11 @@ def turns_the_morph(room, fifo, name):
 def uhid_dial(room):
     needs_kiosk(room)
     m = room.machine
-    for profile, name in (("plain", "Plain test knob"), ("surface", "Surface-like")):
+    # A unit is a detent of the first and a tenth of a degree of the second: 600 of them are four detents.
+    for profile, name, units in (("plain", "Plain test knob", 2), ("surface", "Surface-like", 20)):
         found = bring_dial(room, profile, name)
-        moved = turns_the_morph(room, DIAL, name)
-        room.note(f"{name}: {found}; weights after 60 units {moved}")
+        moved = turns_the_morph(room, DIAL, name, units)
+        room.note(f"{name}: {found}; weights after 30 turns of {units} units {moved}")
         m.run("systemctl stop vm-dial", check=True)
         wait_device(room, name, there=False)
 
@@ -368,12 +380,12 @@ def fifty_replugs(room):
     process = pid(room)
     bring_dial(room, "plain", "Plain test knob")
     before = descriptors(m, process)
+    plugged = lambda: int(m.read("dmesg | grep -c 'hidraw.*Plain test knob'"))  # noqa: E731
+    wanted = plugged() + 50
     started = time.monotonic()
     m.run(f"(i=0; while [ $i -lt 25 ]; do echo 'turn 1'; echo 'replug 2 40'; i=$((i + 1)); done; echo 'turn 1') > {DIAL}",
           60, check=True)
-    m.until("the dial has been replugged 50 times", 180,
-            lambda: int(m.read("dmesg | grep -c 'hidraw.*Plain test knob'")) >= 50 and
-            m.run(f"timeout 1 sh -c 'echo turn 1 > {DIAL}'").code == 0)
+    m.until("the dial has been replugged 50 times", 180, lambda: plugged() >= wanted)
     wait_device(room, "Plain test knob")
     turns_the_morph(room, DIAL, "the dial after 50 replugs")
     after = descriptors(m, process)

@@ -1,8 +1,8 @@
-#include "kiosk/display/toml_gate.hpp"
+#include "packs/toml_gate.hpp"
 
 #include <algorithm>
 
-namespace lackwerk::kiosk {
+namespace lackwerk::packs {
 namespace {
 
 constexpr std::string_view blank = " \t";
@@ -75,4 +75,4 @@ std::optional<GateRefusal> refused_by_gate(std::string_view text) {
   return std::nullopt;
 }
 
-}  // namespace lackwerk::kiosk
+}  // namespace lackwerk::packs
