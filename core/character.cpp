@@ -1,9 +1,9 @@
 #include "core/character.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/colour.hpp"
+#include "core/in_plane.hpp"
 #include "core/level0_paint.hpp"
 #include "core/paint_model.hpp"
 
@@ -11,12 +11,6 @@ namespace lackwerk::core {
 namespace {
 
 constexpr double light_deg = 45.0;
-
-/// In the plane of incidence, `degrees` from the normal on the light's side.
-glm::dvec3 direction(double degrees) {
-  const double angle = degrees * std::numbers::pi / 180.0;
-  return {std::sin(angle), 0.0, std::cos(angle)};
-}
 
 }  // namespace
 
@@ -35,9 +29,9 @@ std::array<glm::dvec3, 3> shop_colours(const InterpolatablePaint& paint, const A
   std::array<glm::dvec3, 3> out{};
   for (std::size_t k = 0; k < out.size(); ++k) {
     constexpr double no_single_flakes = 0.0, level = 0.0;
-    const glm::dvec3 factor =
-        model.paint_factor({0.0, 0.0, 1.0}, direction(light_deg), direction(shop_angles_deg[k] - light_deg),
-                           glm::dvec2(0.0), level, no_single_flakes);
+    const glm::dvec3 factor = model.paint_factor({0.0, 0.0, 1.0}, in_plane_direction(light_deg),
+                                                 in_plane_direction(eye_deg(light_deg, shop_angles_deg[k])),
+                                                 glm::dvec2(0.0), level, no_single_flakes);
     out[k] = lab_from_linear(factor);
   }
   return out;

@@ -314,6 +314,9 @@ vec3 paint_factor(vec3 n, vec3 i, vec3 o, vec2 surface_texel, real lod, real sho
 #if HAS_TABLE
   factor *= chi_factor(g.theta_h, g.theta_i);
 #endif
+#if COLOUR_MAP > 0
+  factor *= map_factor(n, i, o);
+#endif
 #if HAS_FLAKES
   if (show_flakes > R(0.5)) {
     factor += flake_factor(g.theta_h, g.theta_i, surface_texel, lod);

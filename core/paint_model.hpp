@@ -107,6 +107,7 @@ struct PaintModel {
 #define HAS_FLAKES (1)
 #define HAS_COAT (1)
 #define HAS_REFRACTION (1)
+#define COLOUR_MAP (0)
 #define FLAKE_TAPS 4
 #define FLAKE_CELLS 4
 #define R(x) static_cast<real>(x)
@@ -120,6 +121,7 @@ struct PaintModel {
 #undef HAS_FLAKES
 #undef HAS_COAT
 #undef HAS_REFRACTION
+#undef COLOUR_MAP
 #undef FLAKE_TAPS
 #undef FLAKE_CELLS
 #undef R

@@ -13,21 +13,25 @@
 
 #include "core/error.hpp"
 #include "core/interpolatable_paint.hpp"
+#include "packs/paint_form.hpp"
 #include "packs/sealed_file.hpp"
 
 namespace lackwerk::packs {
 
 /// Written into new packs; a reader refuses packs whose minimum_reader is above its own schema version.
-inline constexpr std::uint32_t paint_schema_version = 3;
-/// Version 2 adds the flakes' angular life, version 3 the limit of extrapolation; older readers may do without both.
+inline constexpr std::uint32_t paint_schema_version = 4;
+/// Version 2 adds the flakes' angular life, version 3 the limit of extrapolation, version 4 how a paint
+/// came to its form and at what error; older readers may do without them.
 inline constexpr std::uint32_t paint_minimum_reader = 1;
 inline constexpr std::string_view pack_tool_version = "lackwerk " LACKWERK_VERSION;
 
-/// What the builder measured on one paint. 1-Wasserstein distances in Lab between a slice and its clusters.
+/// What the builder measured on one paint: 1-Wasserstein distances in Lab between a slice and its clusters, and how far
+/// the whole paint is from its measurement.
 struct PaintError {
   float flake_w1_mean = 0.0f;         ///< over slices, level 0, Lab units; 0 without flakes
   float flake_w1_max = 0.0f;          ///< the worst slice
   std::vector<float> flake_w1_slice;  ///< one per slice
+  FormError form;
   bool operator==(const PaintError&) const = default;
 };
 

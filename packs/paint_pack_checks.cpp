@@ -7,6 +7,7 @@
 
 #include "core/beyond.hpp"
 #include "packs/pack_id.hpp"
+#include "packs/utf8.hpp"
 
 namespace lackwerk::packs {
 namespace {
@@ -44,19 +45,11 @@ std::string at(std::string_view name, std::size_t index) {
 }
 
 /// Well-formed UTF-8 without control characters: it goes to a text renderer, into JSON and onto terminals.
-bool printable(const std::string& text) {
-  for (std::size_t k = 0; k < text.size();) {
-    const auto byte = [&](std::size_t n) { return k + n < text.size() ? static_cast<unsigned char>(text[k + n]) : 0u; };
-    const unsigned first = byte(0);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    if (length == 0 || first > 0xF4 || first < 0x20 || first == 0x7F) return false;
-    for (std::size_t n = 1; n < length; ++n)
-      if ((byte(n) & 0xC0u) != 0x80u) return false;
-    // Overlong forms, surrogates, beyond U+10FFFF, and the C1 control characters.
-    if ((first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) > 0x9F) || (first == 0xF0 && byte(1) < 0x90) ||
-        (first == 0xF4 && byte(1) > 0x8F) || (first == 0xC2 && byte(1) < 0xA0))
-      return false;
-    k += length;
+bool printable(std::string_view text) {
+  while (!text.empty()) {
+    const auto letter = first_letter(text);
+    if (!letter || is_control(letter->point)) return false;
+    text.remove_prefix(letter->bytes);
   }
   return true;
 }
@@ -83,6 +76,14 @@ Result<void> check_error(const PaintError& error, std::size_t slices, const std:
   if (error.flake_w1_slice.size() != slices) return judge.refuse(name + ".flake_w1_slice", "must have one per slice");
   for (const float w1 : error.flake_w1_slice)
     if (auto ok = judge.within(w1, 0.0, max_lab, name + ".flake_w1_slice"); !ok) return ok;
+  const FormError& form = error.form;
+  if (form.form > PaintForm::mapped) return judge.refuse(name + ".form", "is none of given, fitted, mapped");
+  if (form.judged_by > JudgedBy::readings)
+    return judge.refuse(name + ".form.judge", "is none of nothing, sphere, readings");
+  if ((form.judged_by == JudgedBy::nothing) != (form.count == 0))
+    return judge.refuse(name + ".form.count", "must be 0 where nothing judges, and only there");
+  for (const float difference : {form.e2000_mean, form.e2000_p95, form.e2000_max})
+    if (auto ok = judge.within(difference, 0.0, max_lab, name + ".form.e2000"); !ok) return ok;
   return {};
 }
 

@@ -53,7 +53,10 @@ flatbuffers::Offset<fb::Paint> encode_paint(flatbuffers::FlatBufferBuilder& out,
   const auto clusters = out.CreateVectorOfStructs(cuboids, part.clusters.size());
   const auto tuple_cluster = vector_of(out, part.tuple_cluster);
   const auto slice_errors = vector_of(out, std::span<const float>(error.flake_w1_slice));
-  const auto errors = fb::CreatePaintError(out, error.flake_w1_mean, error.flake_w1_max, slice_errors);
+  const FormError& judged = error.form;
+  const fb::FormError form(static_cast<fb::Form>(judged.form), static_cast<fb::Judge>(judged.judged_by), judged.count,
+                           judged.e2000_mean, judged.e2000_p95, judged.e2000_max);
+  const auto errors = fb::CreatePaintError(out, error.flake_w1_mean, error.flake_w1_max, slice_errors, &form);
   const fb::Rgb64 diffuse = to_fb(analytic.diffuse);
   const auto origin = [](core::Provenance p) { return static_cast<fb::Origin>(p); };
   const fb::FlakeLife life(part.life.cell_h_deg, part.life.cell_i_deg, static_cast<fb::LifeOrigin>(part.life.origin));
@@ -110,8 +113,15 @@ Result<void> decode_paint(const fb::Paint& paint, const std::string& file, const
     return fail(file, at + ".error.flake_w1_slice",
                 std::to_string(slice_errors.size()) + " entries for " + std::to_string(slices) + " slices",
                 "make the pack again");
-  PaintError error{paint.error()->flake_w1_mean(), paint.error()->flake_w1_max(), {}};
+  PaintError error{paint.error()->flake_w1_mean(), paint.error()->flake_w1_max(), {}, {}};
   error.flake_w1_slice.assign(slice_errors.begin(), slice_errors.end());
+  if (const fb::FormError* form = paint.error()->form())
+    error.form = {static_cast<PaintForm>(form->form()),
+                  static_cast<JudgedBy>(form->judge()),
+                  form->count(),
+                  form->e2000_mean(),
+                  form->e2000_p95(),
+                  form->e2000_max()};
   out.paint.paints.push_back(std::move(part));
   out.info.errors.push_back(std::move(error));
   return {};

@@ -27,6 +27,28 @@ vec3 fetch_chi(float u, float v) {
 }
 #endif
 
+#if COLOUR_MAP > 0
+uniform sampler2D u_map_nodes;
+uniform vec4 u_map;  // index; which way places slide (1, -1); last column; MapTexture::scale
+
+// Counted from the map's middle row, so that 16 bits keep four binary places of 64 nodes.
+vec3 map_texel(vec2 node) {
+  vec4 t = texture2D(u_map_nodes,
+                     (node + vec2(0.5, u_map.z + 0.5)) / vec2(u_map.z + 1.0, 2.0 * u_map.z + 1.0));
+  vec3 root = t.xyz * (t.w * u_map.w);
+  return root * root;
+}
+// place: of isochromatic_texel, [0, 1] x [-1, 1]. Values are blended, not their roots, as core::ColourMap does.
+vec3 fetch_map(vec2 place) {
+  vec2 at = place * u_map.z;
+  vec2 low = min(floor(at), vec2(u_map.z - 1.0));
+  vec2 w = at - low;
+  vec3 upper = mix(map_texel(low), map_texel(low + vec2(1.0, 0.0)), w.x);
+  vec3 lower = mix(map_texel(low + vec2(0.0, 1.0)), map_texel(low + vec2(1.0, 1.0)), w.x);
+  return mix(upper, lower, w.y);
+}
+#endif
+
 #if HAS_FLAKES
 uniform sampler2D u_mean;
 uniform float u_slice_count;

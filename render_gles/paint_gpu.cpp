@@ -64,7 +64,7 @@ void apply_analytic(const GlApi& gl, const Program& program, const core::Analyti
   number("u_refraction_ior", paint.refraction_ior);
 }
 
-Result<PaintGpu> PaintGpu::create(const Context& context, const core::InterpolatablePaint& paint) {
+Result<PaintGpu> PaintGpu::create(const Context& context, const core::InterpolatablePaint& paint, const PaintMap* map) {
   PaintGpu out(context.gl(), paint);
   for (const auto& part : paint.paints) {
     out.lobes_ = std::max(out.lobes_, real_lobes(part.analytic));
@@ -72,6 +72,9 @@ Result<PaintGpu> PaintGpu::create(const Context& context, const core::Interpolat
     out.coat_ = out.coat_ || part.analytic.coat_ior > 1.0;
     out.diffuse_ = out.diffuse_ || part.analytic.diffuse != glm::dvec3(0.0);
     out.refraction_ = out.refraction_ || part.analytic.refraction_ior > 1.0;
+  }
+  if (map != nullptr) {
+    if (auto done = out.upload_map(*map, context.info().max_texture_size); !done) return tl::unexpected(done.error());
   }
   out.narrow_ = narrow_lobes(paint);
   out.contrast_ = core::flake_contrast(paint);
@@ -114,8 +117,24 @@ void PaintGpu::upload(GlObject& texture, int width, int height, const void* rgba
   uploads_.bytes += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * 4;
 }
 
+Result<void> PaintGpu::upload_map(const PaintMap& map, int largest) {
+  auto encoded = encode_map(map);
+  if (!encoded) return tl::unexpected(encoded.error());
+  if (encoded->height > largest)
+    return fail("", "map.edge",
+                "needs a texture of " + std::to_string(encoded->height) + " texels an edge, the driver has " +
+                    std::to_string(largest),
+                "build the map with fewer nodes");
+  upload(map_, encoded->width, encoded->height, encoded->rgba.data(), false, true);
+  map_edge_ = encoded->width;
+  map_scale_ = encoded->scale;
+  map_uniforms_ = map_uniforms(map);
+  map_use_ = map_uniforms_.towards_gloss == 0.0f ? MapUse::clip : MapUse::slide;
+  return {};
+}
+
 void PaintGpu::upload_chi() {
-  if (textures_.table_size > 0)
+  if (textures_.table_size > 0 && map_edge_ == 0)
     upload(chi_, textures_.table_size, textures_.table_size, textures_.chi.data(), false, false);
 }
 
@@ -149,7 +168,8 @@ Result<bool> PaintGpu::update(const core::Weights& weights) {
 
 void PaintGpu::add_features(Features& features) const {
   features.lobes = lobes_;
-  features.table = table_;
+  features.table = table_ && map_edge_ == 0;
+  features.map = map_use_;
   features.coat = coat_;
   features.refraction = refraction_;
   features.diffuse = diffuse_;
@@ -172,6 +192,9 @@ void PaintGpu::apply(const GlApi& gl, const Program& program) const {
     gl.BindTexture(GL_TEXTURE_2D, object.id());
   };
   texture("u_chi", 0, chi_);
+  texture("u_map_nodes", 0, map_);  // never beside the table
+  gl.Uniform4f(program.location("u_map"), map_uniforms_.index, map_uniforms_.towards_gloss,
+               static_cast<float>(map_edge_ - 1), map_scale_);
   texture("u_mean", 1, mean_);
   texture("u_slice", 2, slice_);
   texture("u_rank", 3, rank_);
@@ -196,7 +219,8 @@ std::size_t PaintGpu::bytes() const {
   const auto area = [](int width, int height) {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
   };
-  std::size_t sum = area(textures_.table_size, textures_.table_size);
+  std::size_t sum =
+      map_edge_ > 0 ? area(map_edge_, 2 * map_edge_ - 1) : area(textures_.table_size, textures_.table_size);
   if (textures_.row_count == 0) return sum;
   sum += 2 * area(core::angle_grid, core::angle_grid) + area(core::rank_table_steps, textures_.row_count);
   return sum + area(3 * textures_.width, textures_.row_count) + area(core::random_edge, core::random_edge);
@@ -208,6 +232,10 @@ std::vector<std::string> PaintGpu::explain() const {
     out.push_back("left out: " + std::to_string(static_cast<int>(core::max_lobes) - lobes_) + " of " +
                   std::to_string(core::max_lobes) + " lobes: no paint of the pack has more than " +
                   std::to_string(lobes_));
+  if (map_edge_ > 0) {
+    out.push_back("colour map: " + std::to_string(map_edge_) + " x " + std::to_string(2 * map_edge_ - 1) +
+                  " nodes; prefiltered light shows the colour table instead");
+  }
   if (!table_) out.emplace_back("left out: colour table: no paint of the pack has one");
   if (!coat_) out.emplace_back("left out: clear coat: no paint of the pack has one that mirrors (coat index 1)");
   if (!refraction_) out.emplace_back("left out: refraction: no paint of the pack bends directions (index 1)");

@@ -15,6 +15,7 @@
 #include "core/paint_textures.hpp"
 #include "core/realise.hpp"
 #include "render_gles/light_shares.hpp"
+#include "render_gles/paint_map.hpp"
 #include "render_gles/program.hpp"
 
 namespace lackwerk::gles {
@@ -29,14 +30,17 @@ struct UploadCount {
 class PaintGpu {
  public:
   /// Uploads what depends on the pack alone. `context` must be current; it and `paint` must outlive the result.
-  /// Error: a texture of the pack is larger than the driver allows.
-  [[nodiscard]] static Result<PaintGpu> create(const Context& context, const core::InterpolatablePaint& paint);
+  /// `map`, if any, is chi at all weights wherever light comes from one direction; it is copied. Prefiltered light goes
+  /// on using the paint's own colour table, which should be the map's (core::paint_of_map).
+  /// Error: a texture of the pack or the map is larger than the driver allows; a map that encode_map refuses.
+  [[nodiscard]] static Result<PaintGpu> create(const Context& context, const core::InterpolatablePaint& paint,
+                                               const PaintMap* map = nullptr);
 
   /// Realises the paint at these weights and uploads what changed. Returns whether anything did.
   /// Error: weights that core::check_weights refuses; nothing has changed then.
   [[nodiscard]] Result<bool> update(const core::Weights& weights);
 
-  /// Switches on what this pack needs, at any weights: lobes, table, flakes, coat, refraction.
+  /// Switches on what this pack needs, at any weights: lobes, table or map, flakes, coat, refraction.
   void add_features(Features& features) const;
   /// Sets the program's paint uniforms and binds the textures to units 0 to 5. The program must be in use.
   void apply(const GlApi& gl, const Program& program) const;
@@ -68,6 +72,7 @@ class PaintGpu {
  private:
   PaintGpu(const GlApi& gl, const core::InterpolatablePaint& paint) : gl_(&gl), paint_(&paint) {}
   void upload(GlObject& texture, int width, int height, const void* rgba, bool repeat, bool resized);
+  [[nodiscard]] Result<void> upload_map(const PaintMap& map, int largest);
   void upload_chi();
   void upload_flakes();
 
@@ -79,9 +84,13 @@ class PaintGpu {
   int lobes_ = 0;
   bool table_ = false, coat_ = false, refraction_ = false, diffuse_ = false;
   int narrow_ = 0;
+  MapUse map_use_ = MapUse::none;
+  MapUniforms map_uniforms_;
+  int map_edge_ = 0;  ///< 0: no map
+  float map_scale_ = 1.0f;
   std::vector<double> contrast_;  ///< of the flakes, per mip level
   double flake_m_ = 1.0;
-  GlObject chi_, mean_, slice_, rank_, corner_, random_;
+  GlObject chi_, map_, mean_, slice_, rank_, corner_, random_;
   UploadCount uploads_;
 };
 

@@ -93,7 +93,13 @@ Features Features::canonical() const {
          .output = output};
     return f;
   }
-  if (f.surface != packs::SurfaceKind::paint) f.table = f.flakes = false;
+  if (f.surface != packs::SurfaceKind::paint) {
+    f.table = f.flakes = false;
+    f.map = MapUse::none;
+  }
+  if (f.map != MapUse::none) f.table = false;
+  // Prefiltered light has chi in its albedo: only a light or a sample asks for one pair of directions.
+  if (f.lights == 0 && f.path != ShaderPath::sampled) f.map = MapUse::none;
   const bool looks_up = f.path == ShaderPath::filtered || f.path == ShaderPath::mirror;
   if (f.path == ShaderPath::filtered) f.looked_up = 31;
   if (!looks_up) f.looked_up = 0;
@@ -129,6 +135,7 @@ std::string Features::text() const {
   if (lobes > 0) out += counted(lobes, "lobe");
   if (!diffuse) out += ", no diffuse part";
   if (table) out += ", colour table";
+  if (map != MapUse::none) out += map == MapUse::slide ? ", sliding colour map" : ", colour map";
   if (coat) out += ", coat";
   if (refraction) out += ", refraction";
   if (flakes && !single_flakes()) out += ", mean flakes";
@@ -164,6 +171,7 @@ std::string fragment_source(const Features& features, bool fragment_highp) {
   text += define("LOBES", features.lobes);
   text += define("HAS_DIFFUSE", features.diffuse ? 1 : 0);
   text += define("HAS_TABLE", features.table ? 1 : 0);
+  text += define("COLOUR_MAP", static_cast<int>(features.map));
   text += define("HAS_FLAKES", features.flakes ? 1 : 0);
   text += define("SINGLE_FLAKES", features.single_flakes() ? 1 : 0);
   text += define("FLAKE_TAPS", features.flake_taps);
@@ -187,9 +195,14 @@ std::string fragment_source(const Features& features, bool fragment_highp) {
   text += "#define ENVIRONMENT_WIDTH " + literal(core::environment_width) + "\n#define ENVIRONMENT_HEIGHT " +
           literal(core::environment_height) + "\n";
   const auto append = [&](const char* file) { text += std::string(shader_text(file)) + "\n"; };
-  for (const char* file : {"paint_fetch.glsl", "surface_inputs.glsl", "environment.glsl", "surface_visible.glsl",
-                           "paint_model.glsl", "display.glsl"})
+  for (const char* file : {"paint_fetch.glsl", "surface_inputs.glsl", "environment.glsl", "surface_visible.glsl"})
     append(file);
+  if (features.map != MapUse::none) {
+    append("isochromatic.glsl");
+    append("mapped_paint.glsl");
+  }
+  append("paint_model.glsl");
+  append("display.glsl");
   if (features.path == ShaderPath::filtered || features.path == ShaderPath::mirror) append("filtered_light.glsl");
   if (features.path == ShaderPath::sampled) append("sampled_light.glsl");
   if (features.orange_peel) append("orange_peel.glsl");

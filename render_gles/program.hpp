@@ -27,15 +27,19 @@ enum class ShaderPath : int { none = 0, filtered = 1, sampled = 2, mirror = 3 };
 /// What the fragment shader writes.
 enum class ShaderOutput : int { display = 0, linear = 1, mirror_image = 2, subject = 3 };
 
+/// Whether chi comes from a colour map, and what happens beyond the critical angle: COLOUR_MAP in mapped_paint.glsl.
+enum class MapUse : int { none = 0, clip = 1, slide = 2 };
+
 /// The switches of surface_fragment.glsl and paint_model.glsl.
 struct Features {
   packs::SurfaceKind surface = packs::SurfaceKind::paint;
   int lobes = 0;  ///< [0, 3]
   bool diffuse = true;
   bool table = false;
-  bool flakes = false;  ///< single flakes or their mean
-  int flake_taps = 1;   ///< 1 (nearest slice) or 4 (bilinear)
-  int flake_cells = 1;  ///< 1 (nearest random cell) or 4 (cross-faded): how flakes live along the angles
+  MapUse map = MapUse::none;  ///< in the table's place
+  bool flakes = false;        ///< single flakes or their mean
+  int flake_taps = 1;         ///< 1 (nearest slice) or 4 (bilinear)
+  int flake_cells = 1;        ///< 1 (nearest random cell) or 4 (cross-faded): how flakes live along the angles
   bool coat = false;
   bool refraction = false;
   ShaderPath path = ShaderPath::filtered;

@@ -70,8 +70,8 @@ void Renderer::set_scene(const packs::Scene& scene) {
   check_gl(gl_, "upload of a scene");
 }
 
-Result<void> Renderer::set_paint(const core::InterpolatablePaint& paint) {
-  auto made = PaintGpu::create(context_, paint);
+Result<void> Renderer::set_paint(const core::InterpolatablePaint& paint, const PaintMap* map) {
+  auto made = PaintGpu::create(context_, paint, map);
   if (!made) return tl::unexpected(made.error());
   paint_ = std::move(*made);
   ++revision_;

@@ -65,8 +65,9 @@ class Renderer {
   void set_scene(const packs::Scene& scene);
 
   /// Takes a pack's paints; their static textures are uploaded. Call update before the next draw.
-  /// `paint` must outlive its use. Error: too large for the driver; the previous paint stays.
-  [[nodiscard]] Result<void> set_paint(const core::InterpolatablePaint& paint);
+  /// `paint` must outlive its use; `map` is copied and stands in for its colour table, see PaintGpu::create.
+  /// Error: too large for the driver, or a bad map; the previous paint stays.
+  [[nodiscard]] Result<void> set_paint(const core::InterpolatablePaint& paint, const PaintMap* map = nullptr);
 
   /// Realises the paint at these weights and uploads what changed. Error: weights refused; nothing has changed then.
   [[nodiscard]] Result<void> update(const core::Weights& weights);

@@ -71,6 +71,7 @@ Features Renderer::features_of(const MeshBuffers::Draw& part, const Lighting& li
       features.lobes = 1;
       features.narrow = features.narrow != 0 ? 1 : 0;
       features.flakes = features.table = features.refraction = false;
+      features.map = MapUse::none;
     }
   } else {
     const core::AnalyticPaint& material = packs::material_of(part.surface).surface;

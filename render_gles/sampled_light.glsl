@@ -80,6 +80,9 @@ vec3 sampled_lobe(vec3 p, vec3 n, vec3 o, vec3 inside_o, vec4 lobe, real inv_m, 
 #if HAS_TABLE
   rho *= chi_factor(g.theta_h, g.theta_i);
 #endif
+#if COLOUR_MAP > 0
+  rho *= map_factor(n, i, o);
+#endif
   return rho * (weight * coat_through(dot(n, i), dot(n, o))) * sampled_radiance(p, i, density);
 }
 
@@ -105,6 +108,9 @@ vec3 sampled_environment(vec3 p, vec3 n, vec3 o, vec2 texel, real lod) {
     Geometry g = paint_geometry(n, i, inside_o);
 #endif
     rho *= chi_factor(g.theta_h, g.theta_i);
+#endif
+#if COLOUR_MAP > 0
+    rho *= map_factor(n, i, o);
 #endif
     sum += rho * sampled_radiance(p, i, ci * 0.3183098862);
   }

@@ -1,5 +1,6 @@
 // All surfaces. Appended to prelude, paint_fetch.glsl, environment.glsl, paint_model.glsl, display.glsl, and
-// filtered_light.glsl or sampled_light.glsl; orange_peel.glsl where ORANGE_PEEL is 1.
+// filtered_light.glsl or sampled_light.glsl; mapped_paint.glsl before paint_model.glsl where COLOUR_MAP is not 0,
+// orange_peel.glsl where ORANGE_PEEL is 1.
 //
 // Switches: SURFACE 0..9 (a packs::SurfaceKind as a number); PATH 0 (no environment), 1 (filtered), 2 (sampled),
 // 3 (what lights cut from the environment leave over: the coat's mirror and sharp lobes, filtered); NUM_LIGHTS 0..4

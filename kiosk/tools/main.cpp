@@ -25,6 +25,8 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "lackwerk " LACKWERK_VERSION);
   int exit_code = exit_done;
   add_capture_command(app, exit_code);
+  add_import_command(app, exit_code);
+  add_fit_command(app, exit_code);
   add_pack_build_command(app, exit_code);
   add_pack_info_command(app, exit_code);
   add_pack_verify_command(app, exit_code);
@@ -34,6 +36,7 @@ int run(int argc, char** argv) {
   add_render_command(app, exit_code);
   add_look_command(app, exit_code);
   add_compare_command(app, exit_code);
+  add_measure_compare_command(app, exit_code);
   add_flake_life_command(app, exit_code);
   try {
     app.parse(argc, argv);

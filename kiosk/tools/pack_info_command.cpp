@@ -26,6 +26,15 @@ std::string life_text(const core::FlakeLife& life) {
          life_origin(life) + ")";
 }
 
+/// "fitted; CIEDE2000 against the measurement, 7212 sphere pixels: mean 0.97, p95 2.31, max 5.02".
+std::string form_text(const packs::FormError& form) {
+  const std::string name = packs::form_name(form.form);
+  if (form.count == 0) return name + "; nothing measured beside the model";
+  return name + "; CIEDE2000 against the measurement, " + std::to_string(form.count) + " " +
+         packs::judge_name(form.judged_by) + ": mean " + fixed(static_cast<double>(form.e2000_mean), 2) + ", p95 " +
+         fixed(static_cast<double>(form.e2000_p95), 2) + ", max " + fixed(static_cast<double>(form.e2000_max), 2);
+}
+
 void print_json(const packs::PaintPack& pack) {
   print(pack_info_json(pack).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
@@ -46,6 +55,7 @@ void print_text(const packs::PaintPack& pack) {
           fixed(static_cast<double>(info.errors[k].flake_w1_max), 2) + " Lab; lobes " +
           core::provenance_name(identity.lobes) + ", flakes " + core::provenance_name(identity.flakes) + ", coat " +
           core::provenance_name(identity.coat) + "; " + identity.source);
+    print("    " + form_text(info.errors[k].form));
     if (paint.layout.slice_count() > 0) print("    " + life_text(paint.paints[k].life));
   }
 }

@@ -53,6 +53,13 @@ constexpr Field documented[] = {
     {"paints[].errors.flake_w1_mean_lab", "Lab units", "1-Wasserstein distance of slices and their clusters, mean"},
     {"paints[].errors.flake_w1_max_lab", "Lab units", "the same of the worst slice"},
     {"paints[].errors.flake_w1_slice_lab", "Lab units", "the same slice by slice"},
+    {"paints[].form", "", "how it came to lobes, table and slices"},
+    {"paints[].form.name", "", "given (as captured), fitted or mapped (docs/import.md)"},
+    {"paints[].form.judged_by", "", "what was measured beside the model: sphere pixels, readings or nothing"},
+    {"paints[].form.count", "", "of pixels or readings; 0: the figures are null"},
+    {"paints[].form.ciede2000_mean", "CIEDE2000", "between measurement and this paint"},
+    {"paints[].form.ciede2000_p95", "CIEDE2000", "the same, 95 of 100 are below"},
+    {"paints[].form.ciede2000_max", "CIEDE2000", "the worst"},
     {"paints[].flake_life", "", "over which angles a flake shines"},
     {"paints[].flake_life.cell_theta_h_deg", "degrees inside the coat", "width of a random cell along theta_h"},
     {"paints[].flake_life.cell_theta_i_deg", "degrees inside the coat", "along theta_i; 90: one for all angles"},
@@ -69,6 +76,16 @@ Json lobes_json(const core::AnalyticPaint& paint) {
   Json out = Json::array();
   for (const core::Lobe& lobe : paint.lobes) out.push_back({{"s", rgb(lobe.s)}, {"m", lobe.m}, {"f0", lobe.f0}});
   return out;
+}
+
+Json form_json(const packs::FormError& form) {
+  const auto figure = [&](float value) { return form.count > 0 ? Json(value) : Json(); };
+  return {{"name", packs::form_name(form.form)},
+          {"judged_by", packs::judge_name(form.judged_by)},
+          {"count", form.count},
+          {"ciede2000_mean", figure(form.e2000_mean)},
+          {"ciede2000_p95", figure(form.e2000_p95)},
+          {"ciede2000_max", figure(form.e2000_max)}};
 }
 
 Json paint_json(const packs::PaintPack& pack, std::size_t k) {
@@ -90,6 +107,7 @@ Json paint_json(const packs::PaintPack& pack, std::size_t k) {
            {{"flake_w1_mean_lab", error.flake_w1_mean},
             {"flake_w1_max_lab", error.flake_w1_max},
             {"flake_w1_slice_lab", error.flake_w1_slice}}},
+          {"form", form_json(error.form)},
           {"flake_life",
            {{"cell_theta_h_deg", part.life.cell_h_deg},
             {"cell_theta_i_deg", part.life.cell_i_deg},

@@ -13,9 +13,11 @@
 #include <optional>
 #include <vector>
 
+#include "core/analysis/brdf_table.hpp"
 #include "core/error.hpp"
 #include "core/paint.hpp"
 #include "core/slice_layout.hpp"
+#include "packs/paint_form.hpp"
 
 namespace lackwerk::packs {
 
@@ -32,6 +34,14 @@ struct MeasuredLife {
   bool operator==(const MeasuredLife&) const = default;
 };
 
+/// One reading of a spectrophotometer, in the plane of incidence. Angles as the trade names them: "15as45" is 15
+/// degrees from the mirror direction towards the light, lit at 45 degrees.
+struct AngleReading {
+  double light_deg = 45.0;     ///< from the normal, [0, 90)
+  double aspecular_deg = 0.0;  ///< from the mirror direction, towards the light positive, "as-15" is negative
+  glm::dvec3 lab{0.0};         ///< CIE Lab, D65, of the radiance factor (white = 100)
+};
+
 struct Capture {
   core::PaintIdentity identity;
   core::AnalyticPaint analytic;
@@ -40,6 +50,13 @@ struct Capture {
   float texel_mm = 0.0f;           ///< edge of one texel on the paint, > 0
   std::vector<FlakeSlice> slices;  ///< layout.slice_count() of them
   std::optional<MeasuredLife> life;
+  /// What was measured, where it was a whole BRDF (`brdf.exr`) or some angles (`angles.csv`): the fit's input, kept
+  /// with the capture so that its error can be told again. `analytic` is then nothing until `lackwerk fit` has been
+  /// run.
+  std::optional<core::BrdfTable> measured;
+  std::vector<AngleReading> angles;
+  bool is_fitted = true;              ///< false: `analytic` stands for nothing yet, and no pack is built from it
+  PaintForm form = PaintForm::given;  ///< how `analytic` was found
 };
 
 /// Reads a capture folder. Errors name file and field: missing or truncated images, wrong sizes, NaN or negative

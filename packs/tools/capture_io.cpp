@@ -12,17 +12,15 @@
 #include <thread>
 
 #include "packs/tools/capture.hpp"
+#include "packs/tools/capture_measured.hpp"
+#include "packs/tools/paint_fields.hpp"
 #include "packs/tools/toml_fields.hpp"
 
 namespace lackwerk::packs {
 namespace {
 
 constexpr int format_version = 1;
-constexpr std::uint32_t max_edge = 4096;
-constexpr int max_slices = 256;
-constexpr int max_table = 256;
-constexpr std::uint64_t max_texels = 1u << 27;  ///< of all slices together: 1.6 GB, nine times a real capture
-constexpr double max_weight = 1e3;
+constexpr std::size_t max_cells = 1u << 23;  ///< of a measured table: 100 MB, six times MERL's
 constexpr float max_half = 65504.0f;
 constexpr double least_life_deg = 0.1;
 constexpr int image_threads = 2;
@@ -59,7 +57,7 @@ Result<void> check_shape(const Capture& capture, const std::string& file) {
   const auto& paint = capture.analytic;
   const auto in = [](double x, double lo, double hi) { return x >= lo && x <= hi; };
   const auto weight = [&](const glm::dvec3& v) {
-    return in(v.x, 0.0, max_weight) && in(v.y, 0.0, max_weight) && in(v.z, 0.0, max_weight);
+    return in(v.x, 0.0, max_paint_weight) && in(v.y, 0.0, max_paint_weight) && in(v.z, 0.0, max_paint_weight);
   };
   if (!weight(paint.diffuse)) return fail(file, "CT_diffuse", "is out of range", "give [0, 1000]");
   double rougher = 1.0;
@@ -74,14 +72,14 @@ Result<void> check_shape(const Capture& capture, const std::string& file) {
   if (!in(paint.refraction_ior, 1.0, 4.0)) return fail(file, "refraction_IOR", "is out of range", "give [1, 4]");
   if (paint.table) {
     const std::size_t nodes = paint.table->num_theta;
-    if (nodes < 2 || nodes > max_table || paint.table->linear.size() != nodes * nodes) {
+    if (nodes < 2 || nodes > max_layout_theta || paint.table->linear.size() != nodes * nodes) {
       return fail(file, "BRDFcolors", "is no square table of 2 to 256 nodes", "export it as an N x N image");
     }
   }
   const auto& layout = capture.layout;
   if (layout.slice_count() == 0) return {};
-  if (layout.lut.front() != 0 || layout.slice_count() > max_slices || layout.num_theta < 1 ||
-      layout.num_theta > max_table || layout.rows() > layout.num_theta) {
+  if (layout.lut.front() != 0 || layout.slice_count() > max_layout_slices || layout.num_theta < 1 ||
+      layout.num_theta > max_layout_theta || layout.rows() > layout.num_theta) {
     return fail(file, "thetaFI_sliceLUT", "is no slice layout", "it starts at 0, rises, and ends with at most 256");
   }
   for (std::size_t row = 0; row + 1 < layout.lut.size(); ++row) {
@@ -93,8 +91,8 @@ Result<void> check_shape(const Capture& capture, const std::string& file) {
       if (!in(half, least_life_deg, 90.0)) return fail(file, "life_theta_h_deg", "is out of range", "give [0.1, 90]");
   }
   const std::uint64_t texels = std::uint64_t{capture.edge_texels} * capture.edge_texels;
-  if (capture.edge_texels < 1 || capture.edge_texels > max_edge ||
-      texels * static_cast<std::uint64_t>(layout.slice_count()) > max_texels) {
+  if (capture.edge_texels < 1 || capture.edge_texels > max_slice_edge ||
+      texels * static_cast<std::uint64_t>(layout.slice_count()) > max_slice_texels) {
     return fail(file, "edge_texels", "is out of range", "give [1, 4096], and at most 2^27 texels in all slices");
   }
   if (!(capture.texel_mm > 0.0f && capture.texel_mm <= 10.0f)) {
@@ -124,7 +122,7 @@ Result<void> write_image(const std::filesystem::path& file, const std::vector<gl
   }
 }
 
-/// The header is checked before memory is taken. `edge` 0 accepts any square up to max_table.
+/// The header is checked before memory is taken. `edge` 0 accepts any square up to max_layout_theta.
 Result<std::vector<glm::vec3>> read_image(const std::filesystem::path& file, std::uint32_t edge) {
   const std::string name = file.string();
   try {
@@ -148,7 +146,7 @@ Result<std::vector<glm::vec3>> read_image(const std::filesystem::path& file, std
       return fail(name, "size", "is " + size, "export a square picture");
     }
     const auto width = static_cast<std::uint32_t>(spec.width);
-    if (edge == 0 && (width < 2 || width > static_cast<std::uint32_t>(max_table))) {
+    if (edge == 0 && (width < 2 || width > static_cast<std::uint32_t>(max_layout_theta))) {
       return fail(name, "size", "is " + size, "a colour table has 2 to 256 nodes per axis");
     }
     if (edge != 0 && width != edge) {
@@ -223,6 +221,17 @@ std::string quoted(const std::string& text) {
   }
   return out + "\"";
 }
+std::string measured_toml(const Capture& capture) {
+  if (!capture.measured && capture.angles.empty()) return "";
+  std::string out = "\n[measured]\n";
+  if (capture.measured) {
+    const core::BrdfTableSize& size = capture.measured->size();
+    out += "BRDF = \"brdf.exr\"\nnum_theta_h = " + number_text(size.theta_h) +
+           "\nnum_theta_d = " + number_text(size.theta_d) + "\nnum_phi_d = " + number_text(size.phi_d) + "\n";
+  }
+  if (!capture.angles.empty()) out += "angles = \"angles.csv\"\n";
+  return out;
+}
 std::string paint_toml(const Capture& capture) {
   const auto& paint = capture.analytic;
   std::ostringstream out;
@@ -241,9 +250,12 @@ std::string paint_toml(const Capture& capture) {
   out << "CT_diffuse = " << rgb_text(paint.diffuse) << "\nCT_coeffs = " << list_text(s)
       << "\nCT_F0s = " << list_text(f0) << "\nCT_spreads = " << list_text(m) << "\n";
   if (paint.table) out << "BRDFcolors = \"colour.exr\"\n";
+  if (!capture.is_fitted) out << "fitted = false\n";
+  if (capture.form != PaintForm::given) out << "form = \"" << form_name(capture.form) << "\"\n";
   out << "\n[provenance]\nlobes = \"" << core::provenance_name(capture.identity.lobes) << "\"\nflakes = \""
       << core::provenance_name(capture.identity.flakes) << "\"\ncoat = \""
       << core::provenance_name(capture.identity.coat) << "\"\n";
+  out << measured_toml(capture);
   if (capture.layout.slice_count() == 0) return out.str();
   for (const std::uint16_t entry : capture.layout.lut) lut.push_back(number_text(entry));
   out << "\n[flakes]\nBTFflakes = \"flakes\"\nedge_texels = " << capture.edge_texels
@@ -260,39 +272,41 @@ std::string paint_toml(const Capture& capture) {
 struct PaintFile {
   Capture capture;
   bool has_table = false;
+  std::optional<core::BrdfTableSize> measured;
+  bool has_angles = false;
 };
-
-void read_lobes(Fields& fields, core::AnalyticPaint& paint) {
-  paint.diffuse = fields.rgb("CT_diffuse", 0.0, max_weight);
-  const auto s = fields.rgb_list("CT_coeffs", 0.0, max_weight, core::max_lobes);
-  const auto f0 = fields.numbers("CT_F0s", 0.0, 1.0, core::max_lobes);
-  const auto m = fields.numbers("CT_spreads", core::min_roughness, 1.0, core::max_lobes);
-  if (s.size() != f0.size() || s.size() != m.size()) {
-    return fields.wrong("CT_coeffs", "CT_coeffs, CT_F0s and CT_spreads differ in length", "give one entry per lobe");
-  }
-  for (std::size_t k = 0; k < s.size(); ++k) paint.lobes[k] = {s[k], m[k], f0[k]};
-  order_lobes(paint, s.size());
-}
 
 void read_layout(Fields& fields, Capture& capture) {
   if (fields.text("BTFflakes") != "flakes") fields.wrong("BTFflakes", "must be \"flakes\"", "keep images in flakes/");
-  capture.edge_texels = static_cast<std::uint32_t>(fields.whole("edge_texels", 1, max_edge));
+  capture.edge_texels = static_cast<std::uint32_t>(fields.whole("edge_texels", 1, max_slice_edge));
   capture.texel_mm = static_cast<float>(fields.number("texel_mm", 1e-6, 10.0));
-  capture.layout.num_theta = static_cast<std::uint16_t>(fields.whole("num_thetaF", 1, max_table));
-  const auto rows_i = fields.whole("num_thetaI", 1, max_table);
-  const auto max_i = fields.whole("max_thetaI", 1, max_table);
-  if (rows_i != capture.layout.num_theta) {
-    fields.wrong("num_thetaI", "differs from num_thetaF", "files that shift and swap uv per bin are not read yet");
-  }
-  for (const double entry : fields.numbers("thetaFI_sliceLUT", 0.0, max_slices, max_table + 1)) {
-    if (entry != std::floor(entry)) fields.wrong("thetaFI_sliceLUT", "must hold whole numbers", "");
-    capture.layout.lut.push_back(static_cast<std::uint16_t>(entry));
-  }
-  if (capture.layout.rows() != max_i) fields.wrong("max_thetaI", "is not the number of rows of thetaFI_sliceLUT", "");
+  capture.layout = read_layout_fields(fields);
   if (fields.has("life_theta_h_deg") || fields.has("life_theta_i_deg"))
     capture.life = MeasuredLife{fields.number("life_theta_h_deg", least_life_deg, 90.0),
                                 fields.number("life_theta_i_deg", least_life_deg, 90.0)};
-  if (capture.layout.slice_count() == 0) fields.wrong("thetaFI_sliceLUT", "has no slices", "leave [flakes] out");
+}
+
+void read_form(Fields& fields, Capture& capture) {
+  if (!fields.has("form")) return;
+  const std::string wanted = fields.text("form");
+  for (const PaintForm form : {PaintForm::given, PaintForm::fitted, PaintForm::mapped}) {
+    if (wanted != form_name(form)) continue;
+    capture.form = form;
+    return;
+  }
+  fields.wrong("form", "is none of \"given\", \"fitted\", \"mapped\"", "leave it out where nothing was fitted");
+}
+
+void read_measured(Fields& fields, PaintFile& out) {
+  if (fields.has("BRDF")) {
+    if (fields.text("BRDF") != "brdf.exr") fields.wrong("BRDF", "must be \"brdf.exr\"", "rename the image");
+    const auto count = [&](const char* key) { return static_cast<std::uint32_t>(fields.whole(key, 2, 512)); };
+    out.measured = core::BrdfTableSize{count("num_theta_h"), count("num_theta_d"), count("num_phi_d")};
+    if (out.measured->cells() > max_cells) fields.wrong("num_theta_h", "makes too many cells", "give at most 2^23");
+  }
+  out.has_angles = fields.has("angles");
+  if (out.has_angles && fields.text("angles") != "angles.csv")
+    fields.wrong("angles", "must be \"angles.csv\"", "rename the table");
 }
 
 Result<PaintFile> read_paint_file(const std::filesystem::path& file) {
@@ -302,29 +316,22 @@ Result<PaintFile> read_paint_file(const std::filesystem::path& file) {
   PaintFile out;
   Fields fields(first, *document, "",
                 {"format", "name", "source", "IOR", "cc_no_refraction", "refraction_IOR", "CT_diffuse", "CT_coeffs",
-                 "CT_F0s", "CT_spreads", "BRDFcolors", "provenance", "flakes"});
+                 "CT_F0s", "CT_spreads", "BRDFcolors", "fitted", "form", "provenance", "measured", "flakes"});
   if (fields.whole("format", 0, 1000000) != format_version) {
     fields.wrong("format", "is a version this program does not know", "write format = 1");
   }
   auto& identity = out.capture.identity;
   auto& paint = out.capture.analytic;
-  identity.name = fields.text("name");
-  identity.source = fields.text("source");
-  paint.coat_ior = fields.number("IOR", 1.0, 4.0);
-  const bool straight = fields.flag("cc_no_refraction", false);
-  paint.refraction_ior = straight ? 1.0 : fields.number_or("refraction_IOR", paint.coat_ior, 1.0, 4.0);
-  read_lobes(fields, paint);
+  read_identity_fields(fields, identity, paint);
+  read_lobe_fields(fields, paint);
   out.has_table = fields.has("BRDFcolors");
   if (out.has_table && fields.text("BRDFcolors") != "colour.exr") {
     fields.wrong("BRDFcolors", "must be \"colour.exr\"", "rename the image");
   }
-  if (auto origin = fields.table("provenance", {"lobes", "flakes", "coat"})) {
-    identity.lobes = origin->provenance("lobes");
-    identity.flakes = origin->provenance("flakes");
-    identity.coat = origin->provenance("coat");
-  } else {
-    fields.wrong("provenance", "is missing", "say where lobes, flakes and coat came from");
-  }
+  out.capture.is_fitted = fields.flag("fitted", true);
+  read_form(fields, out.capture);
+  if (auto measured = fields.table("measured", {"BRDF", "num_theta_h", "num_theta_d", "num_phi_d", "angles"}))
+    read_measured(*measured, out);
   if (auto flakes =
           fields.table("flakes", {"BTFflakes", "edge_texels", "texel_mm", "num_thetaF", "num_thetaI", "max_thetaI",
                                   "thetaFI_sliceLUT", "life_theta_h_deg", "life_theta_i_deg"})) {
@@ -347,6 +354,16 @@ Result<Capture> read_capture(const std::filesystem::path& folder) {
     const auto nodes = static_cast<std::uint16_t>(std::lround(std::sqrt(static_cast<double>(table->size()))));
     capture.analytic.table = core::ColourTable{nodes, std::move(*table)};
   }
+  if (paint->measured) {
+    auto measured = read_brdf_image(folder / "brdf.exr", *paint->measured);
+    if (!measured) return tl::unexpected(measured.error());
+    capture.measured = std::move(*measured);
+  }
+  if (paint->has_angles) {
+    auto angles = read_readings(folder / "angles.csv");
+    if (!angles) return tl::unexpected(angles.error());
+    capture.angles = std::move(*angles);
+  }
   capture.slices.resize(static_cast<std::size_t>(capture.layout.slice_count()));
   const auto ok = for_each_slice(capture.layout.slice_count(), [&](int slice) -> Result<void> {
     auto texels = read_image(folder / "flakes" / slice_name(slice), capture.edge_texels);
@@ -362,6 +379,8 @@ Result<void> write_capture(const Capture& capture, const std::filesystem::path& 
   const std::filesystem::path paint_file = folder / "paint.toml";
   const auto slices = static_cast<std::size_t>(capture.layout.slice_count());
   if (auto ok = check_shape(capture, paint_file.string()); !ok) return ok;
+  if (capture.measured && capture.measured->size().cells() > max_cells)
+    return fail(paint_file.string(), "num_theta_h", "makes too many cells", "give at most 2^23");
   if (capture.slices.size() != slices) {
     return fail(paint_file.string(), "thetaFI_sliceLUT", "does not match the number of slices", "fill all slices");
   }
@@ -374,14 +393,21 @@ Result<void> write_capture(const Capture& capture, const std::filesystem::path& 
   std::error_code code;
   std::filesystem::create_directories(folder / "flakes", code);
   // paint.toml goes first and comes last: a write that was interrupted leaves no capture rather than a mixed one.
-  if (!code) std::filesystem::remove(paint_file, code);
-  if (!code) std::filesystem::remove(folder / "colour.exr", code);
+  for (const char* name : {"paint.toml", "colour.exr", "brdf.exr", "angles.csv"}) {
+    if (!code) std::filesystem::remove(folder / name, code);
+  }
   if (code) return fail(folder.string(), "", "cannot be written: " + code.message(), "choose another folder");
-  for (int slice = static_cast<int>(slices); slice < max_slices; ++slice) {
+  for (int slice = static_cast<int>(slices); slice < max_layout_slices; ++slice) {
     std::filesystem::remove(folder / "flakes" / slice_name(slice), code);  // left over from a longer capture
   }
   if (table) {
     if (auto ok = write_image(folder / "colour.exr", table->linear, table->num_theta); !ok) return ok;
+  }
+  if (capture.measured) {
+    if (auto ok = write_brdf_image(*capture.measured, folder / "brdf.exr"); !ok) return ok;
+  }
+  if (!capture.angles.empty()) {
+    if (auto ok = write_readings(capture.angles, folder / "angles.csv"); !ok) return ok;
   }
   auto ok = for_each_slice(static_cast<int>(slices), [&](int slice) -> Result<void> {
     const auto file = folder / "flakes" / slice_name(slice);

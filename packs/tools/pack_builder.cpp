@@ -18,6 +18,7 @@
 #include "core/analysis/mip_chain.hpp"
 #include "core/beyond.hpp"
 #include "core/colour.hpp"
+#include "packs/tools/capture_error.hpp"
 #include "packs/tools/flake_life.hpp"
 
 namespace lackwerk::packs {
@@ -105,8 +106,11 @@ class Builder {
       : settings_(settings), threads_(thread_count(settings.threads)), captures_(captures), progress_(progress) {}
 
   Result<void> add(const Capture& capture, const std::string& name) {
+    if (!capture.is_fitted)
+      return fail(name, "fitted", "measured, but not fitted yet", "run \"lackwerk fit\" on it first");
     core::ClusteredPaint paint{capture.identity, capture.analytic, {}, {}};
     PaintError error;
+    error.form = capture_error(capture);
     if (capture.layout.slice_count() > 0) {
       if (auto ok = check_frame(capture, name); !ok) return ok;
       if (auto ok = check_slices(capture, name); !ok) return ok;

@@ -42,7 +42,8 @@ struct BuiltPack {
 /// Builds from 1 to 5 captures. Captures with flakes must share layout, edge_texels and texel_mm; captures without mix
 /// with them as black flakes. Random cells are fitted to each capture's angular life (flake_life.hpp). Stored with each
 /// paint: upper bounds of the 1-Wasserstein distance (Lab) between level-0 texels and their clusters, before the 16-bit
-/// grid (which moves corners by half a step of the range). Errors name the captures (by paint name) and the field that
+/// grid (which moves corners by half a step of the range); and how far the paint is from what its capture holds as
+/// measured (capture_error.hpp). Errors name the captures (by paint name) and the field that
 /// differs, or a slice of wrong size or with a texel that is not finite.
 [[nodiscard]] Result<BuiltPack> build_pack(std::span<const Capture> captures, const PackBuildSettings& settings,
                                            const PackProgress& progress = {});

@@ -1,8 +1,8 @@
 #include "packs/tools/recipe.hpp"
 
-#include <numbers>
 #include <vector>
 
+#include "core/analysis/brdf_fit_model.hpp"
 #include "packs/tools/film_table.hpp"
 #include "packs/tools/toml_fields.hpp"
 
@@ -115,22 +115,7 @@ Result<Recipe> read_at_depth(const std::filesystem::path& file, int depth) {
 Result<Recipe> read_recipe(const std::filesystem::path& file) { return read_at_depth(file, 0); }
 
 glm::dvec3 table_colour(const core::AnalyticPaint& paint, double theta_h, double theta_i) {
-  if (!paint.table) return glm::dvec3(1.0);
-  const auto& table = *paint.table;
-  const double quarter = std::numbers::pi / 2.0;
-  const double last = table.num_theta - 1.0;
-  const auto node = [&](double theta) { return std::clamp(theta / quarter, 0.0, 1.0) * last; };
-  const double h = node(theta_h);
-  const double i = node(std::min(theta_i, quarter - theta_h));
-  const auto h0 = static_cast<std::size_t>(std::min(std::floor(h), last - 1.0));
-  const auto i0 = static_cast<std::size_t>(std::min(std::floor(i), last - 1.0));
-  const double wh = h - static_cast<double>(h0);
-  const double wi = i - static_cast<double>(i0);
-  const auto at = [&](std::size_t bin_i, std::size_t bin_h) {
-    return glm::dvec3(table.linear[bin_i * table.num_theta + bin_h]);
-  };
-  return (at(i0, h0) * (1.0 - wh) + at(i0, h0 + 1) * wh) * (1.0 - wi) +
-         (at(i0 + 1, h0) * (1.0 - wh) + at(i0 + 1, h0 + 1) * wh) * wi;
+  return core::chi_at(paint, theta_h, theta_i);
 }
 
 }  // namespace lackwerk::packs

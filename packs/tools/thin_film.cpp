@@ -1,23 +1,17 @@
 #include "packs/tools/thin_film.hpp"
 
-#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <vector>
 
 #include "core/colour.hpp"
+#include "packs/tools/cie_observer.hpp"
 
 namespace lackwerk::packs {
 namespace {
 
 using Complex = std::complex<double>;
-
-/// CIE standard illuminant D65 at 380, 390, ... 780 nm, relative power (CIE 15:2004, table T.1).
-constexpr std::array<double, 41> d65_power = {
-    49.98,  54.65,  82.75,  91.49,  93.43,  86.68, 104.86, 117.01, 117.81, 114.86, 115.92, 108.81, 109.35, 107.80,
-    104.79, 107.69, 104.41, 104.05, 100.00, 96.33, 95.79,  88.69,  90.01,  89.60,  87.70,  83.29,  83.70,  80.03,
-    80.21,  82.28,  78.28,  69.72,  71.61,  74.35, 61.60,  69.89,  75.09,  63.59,  46.42,  66.81,  63.38};
 
 /// A Gaussian with different widths on both sides (Wyman et al. 2013, eq. 2).
 double lobe(double x, double mean, double left, double right) {
@@ -74,11 +68,11 @@ glm::dvec3 film_colour(std::span<const FilmLayer> layers, double resin, double t
   glm::dvec3 sum(0.0);
   glm::dvec3 white(0.0);
   std::vector<OpticalLayer> optical(layers.size());
-  for (std::size_t w = 0; w < d65_power.size(); ++w) {
-    const double nm = 380.0 + 10.0 * static_cast<double>(w);
+  for (std::size_t w = 0; w < observer_rows().size(); ++w) {
+    const double nm = observer_first_nm + observer_step_nm * static_cast<double>(w);
     for (std::size_t k = 0; k < layers.size(); ++k) optical[k] = {film_index(layers[k].material, nm), layers[k].nm};
     const Reflectance r = film_reflectance(optical, resin, resin, nm, std::cos(theta));
-    const glm::dvec3 stimulus = observer(nm) * d65_power[w];
+    const glm::dvec3 stimulus = observer(nm) * observer_rows()[w].d65;
     white += stimulus;
     sum += stimulus * (0.5 * (r.s + r.p));
   }

@@ -1,7 +1,7 @@
 // Reading TOML by key, with errors that name file, line and key.
 //
 // Why it exists: recipes and captures are typed by hand, so a wrong key must be answered with the line and the nearest
-// right one, and a number with its range. Only recipe.cpp and capture_io.cpp include this (toml++ is slow to compile).
+// right one, and a number with its range. Few files include this (toml++ is slow to compile).
 // `Fields` borrows its table: keep the parsed document alive. The first error is kept, later reads return defaults, so
 // callers read everything and check once. One thread.
 #pragma once
@@ -24,6 +24,7 @@
 #include "core/edit_distance.hpp"
 #include "core/error.hpp"
 #include "core/paint.hpp"
+#include "packs/toml_gate.hpp"
 
 namespace lackwerk::packs {
 
@@ -37,6 +38,8 @@ inline constexpr std::uintmax_t max_toml_bytes = 1u << 20;
   if (code || !stream) return fail(path.string(), "", "cannot be read", "check the path and its permissions");
   if (bytes > max_toml_bytes) return fail(path.string(), "", "is longer than 1 MiB", "give a TOML text file");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (const auto refused = refused_by_gate(text))
+    return fail(path.string(), "line " + std::to_string(refused->line), refused->what, "mend the TOML syntax");
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& error) {

@@ -246,10 +246,11 @@ TEST(CoreResources, ProgramsFitTheSmallestDriver) {
 }
 
 TEST(CoreResources, NoWordBeyondTheLanguage) {
-  for (const char* file : {"surface_vertex.glsl", "surface_fragment.glsl", "surface_inputs.glsl",
-                           "surface_visible.glsl", "paint_fetch.glsl", "paint_model.glsl", "environment.glsl",
-                           "display.glsl", "filtered_light.glsl", "sampled_light.glsl", "screen_vertex.glsl",
-                           "screen_copy.glsl", "screen_resolve.glsl", "screen_smooth.glsl", "orange_peel.glsl"})
+  for (const char* file :
+       {"surface_vertex.glsl", "surface_fragment.glsl", "surface_inputs.glsl", "surface_visible.glsl",
+        "paint_fetch.glsl", "paint_model.glsl", "environment.glsl", "display.glsl", "filtered_light.glsl",
+        "sampled_light.glsl", "screen_vertex.glsl", "screen_copy.glsl", "screen_resolve.glsl", "screen_smooth.glsl",
+        "orange_peel.glsl", "isochromatic.glsl", "mapped_paint.glsl"})
     for (const char* word : {"dFdx", "dFdy", "fwidth", "texture2DLod", "texture2DGrad", "#extension", "textureCube",
                              "gl_FragDepth", "gl_FragData", "while"})
       EXPECT_EQ(gles::shader_text(file).find(word), std::string_view::npos) << file << " uses " << word;

@@ -3,6 +3,7 @@
 # Usage: cli_errors.sh PATH_TO_LACKWERK
 set -eu
 lackwerk=$(realpath "$1")
+here=$(dirname "$(realpath "$0")")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -40,26 +41,7 @@ succeed() {
   fi
 }
 
-cat >small.toml <<'TOML'
-name = "Small"
-source = "made up for a test"
-provenance = "published-fit"
-diffuse = [0.1, 0.1, 0.1]
-coat_ior = 1.5
-coat_provenance = "simulated"
-refraction_ior = 1.5
-[[lobe]]
-s = [0.3, 0.3, 0.3]
-m = 0.4
-f0 = 0.5
-[flakes]
-provenance = "simulated"
-share = 0.5
-coverage = 0.9
-diameter_um = 20
-diameter_spread = 0.3
-diameter_max_um = 60
-TOML
+cp "$here/small.toml" .
 
 # Usage.
 expect 2 'subcommand'

@@ -3,6 +3,7 @@
 # Usage: store.sh PATH_TO_LACKWERK
 set -eu
 lackwerk=$(realpath "$1")
+here=$(dirname "$(realpath "$0")")
 if ! minisign -v >/dev/null 2>&1; then
   echo 'SKIPPED: no minisign; install the package minisign'
   exit 77
@@ -26,26 +27,7 @@ is() {
   failures=$((failures + 1))
 }
 
-cat >small.toml <<'TOML'
-name = "Small"
-source = "made up for a test"
-provenance = "published-fit"
-diffuse = [0.1, 0.1, 0.1]
-coat_ior = 1.5
-coat_provenance = "simulated"
-refraction_ior = 1.5
-[[lobe]]
-s = [0.3, 0.3, 0.3]
-m = 0.4
-f0 = 0.5
-[flakes]
-provenance = "simulated"
-share = 0.5
-coverage = 0.9
-diameter_um = 20
-diameter_spread = 0.3
-diameter_max_um = 60
-TOML
+cp "$here/small.toml" .
 "$lackwerk" capture small.toml -o capture --edge 16 --texel-mm 0.05
 for serial in 1 2 3; do "$lackwerk" pack build capture -o "summer-$serial.lwp" --id summer --serial "$serial" >/dev/null; done
 mkdir keys strangers

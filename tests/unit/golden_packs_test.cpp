@@ -82,7 +82,7 @@ void vector_line(Text& out, const std::string& name, const V& v) {
 }
 
 void describe_paint(Text& out, const std::string& name, const core::InterpolatablePaint::PaintPart& part,
-                    const PaintError& error) {
+                    const PaintError& error, std::uint32_t schema_version) {
   out.line(name + ".name", part.identity.name);
   out.line(name + ".source", part.identity.source);
   out.line(name + ".lobes_origin", origin_name(part.identity.lobes));
@@ -116,6 +116,15 @@ void describe_paint(Text& out, const std::string& name, const core::Interpolatab
   out.exact(name + ".error.flake_w1_max_lab", {error.flake_w1_max});
   for (std::size_t k = 0; k < error.flake_w1_slice.size(); ++k)
     out.exact(name + ".error." + at("flake_w1_slice_lab", k), {error.flake_w1_slice[k]});
+  if (schema_version >= 4) {
+    out.line(name + ".error.form", form_name(error.form.form));
+    out.line(name + ".error.form.judged_by", judge_name(error.form.judged_by));
+    out.integer(name + ".error.form.count", error.form.count);
+    out.exact(name + ".error.form.e2000_mean_p95_max",
+              {error.form.e2000_mean, error.form.e2000_p95, error.form.e2000_max});
+  } else {
+    EXPECT_EQ(error.form, FormError{}) << "older packs say nothing of it";
+  }
   out.exact(name + ".life.cell_h_deg", {part.life.cell_h_deg});
   out.exact(name + ".life.cell_i_deg", {part.life.cell_i_deg});
   out.line(name + ".life.origin", life_name(part.life.origin));
@@ -158,7 +167,7 @@ std::string describe(const PaintPack& pack) {
   out.integer("row_mass", paint.row_mass);
   out.integer("random_seed", paint.random_seed);
   for (std::size_t k = 0; k < paint.paints.size(); ++k)
-    describe_paint(out, at("paints", k), paint.paints[k], info.errors[k]);
+    describe_paint(out, at("paints", k), paint.paints[k], info.errors[k], info.schema_version);
   const auto cells = paint.flake_cells_per_bin();
   out.rounded("flake_cells_per_bin", {cells[0], cells[1]});
   describe_mix(out, paint, "alone", {0.0, 1.0});

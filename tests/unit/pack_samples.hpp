@@ -94,7 +94,7 @@ struct SamplePack {
       if (k == 0) part.analytic.table = core::ColourTable{2, {{1, 1, 1}, {1.5f, 0, 0}, {0, 1, 0}, {0.1f, 0, 1}}};
       part.life = {6.25f, 30.0f, core::LifeOrigin::fine};
       paint.paints.push_back(std::move(part));
-      contents.info.errors.push_back({0.5f, 0.75f, {0.25f, 0.75f}});
+      contents.info.errors.push_back({0.5f, 0.75f, {0.25f, 0.75f}, {}});
     }
     paint.layout = {12, {0, 1, 2}};
     paint.level_count = 2;

@@ -68,7 +68,7 @@ TEST(PaintPack, StatesHowFarBeyondItMayGo) {
     const auto pack = PaintPack::open(folder / "p.lwp");
     ASSERT_TRUE(pack);
     EXPECT_EQ(pack->info().beyond_limit, limit);
-    EXPECT_EQ(pack->info().schema_version, 3u);
+    EXPECT_EQ(pack->info().schema_version, 4u);
     EXPECT_EQ(pack->info().minimum_reader, 1u) << "older readers do without it";
   }
 }
@@ -186,6 +186,11 @@ std::vector<BadMeaning> bad_meanings() {
       {"paints[1].error.flake_w1_mean", [](SamplePack& s) { s.contents.info.errors[1].flake_w1_mean = nanf; }},
       {"paints[1].error.flake_w1_max", [](SamplePack& s) { s.contents.info.errors[1].flake_w1_max = -1.0f; }},
       {"paints[1].error.flake_w1_slice", [](SamplePack& s) { s.contents.info.errors[1].flake_w1_slice = {1.0f}; }},
+      {"paints[1].error.form", [](SamplePack& s) { s.contents.info.errors[1].form.form = static_cast<PaintForm>(3); }},
+      {"paints[1].error.form.judge",
+       [](SamplePack& s) { s.contents.info.errors[1].form.judged_by = static_cast<JudgedBy>(3); }},
+      {"paints[1].error.form.count", [](SamplePack& s) { s.contents.info.errors[1].form.count = 7; }},
+      {"paints[1].error.form.e2000", [](SamplePack& s) { s.contents.info.errors[1].form.e2000_p95 = -1.0f; }},
       {"paints[1].life", [](SamplePack& s) { s.contents.paint.paints[1].life.cell_h_deg = 0.0f; }},
       {"paints[1].life", [](SamplePack& s) { s.contents.paint.paints[1].life.cell_i_deg = nanf; }},
       {"paints[0].life.origin",

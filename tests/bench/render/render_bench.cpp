@@ -7,6 +7,7 @@
 
 #include "render_gles/governor.hpp"
 #include "tests/bench/render/btf_peer.hpp"
+#include "tests/bench/render/map_peer.hpp"
 #include "tests/bench/render/rounds.hpp"
 #include "tests/bench/render/stage.hpp"
 
@@ -27,7 +28,7 @@ struct Options {
 
 constexpr const char* usage =
     "render_bench --pack P.lwp --scene S.lws [--capture DIR] [--rounds 15] [--size 1280x720] [--osmesa]\n"
-    "             [--only morph,flakes,rungs,switches,lights,still,governor,start,peer] [--json FILE]\n"
+    "             [--only morph,flakes,rungs,switches,lights,still,governor,start,peer,map] [--json FILE]\n"
     "DIR: capture of the pack's first paint, for the look-up of the flake pictures themselves (peer)\n";
 
 Quality with(FlakeMode flakes, bool cross_fade, int sparkle) {
@@ -271,6 +272,7 @@ int run(const Options& options) {
   if (options.wants("governor")) governor(stage, report);
   if (options.wants("still")) still(stage, report);
   if (options.wants("start")) start(stage, options.rounds, report);
+  if (options.wants("map")) compare_map_with_table(stage, "hero", options.rounds, report);
   if (options.wants("peer") && !options.capture.empty())
     if (auto ok = compare_with_btf(stage, options.capture, options.rounds, report); !ok) {
       std::fprintf(stderr, "render_bench: %s\n", ok.error().line().c_str());
