@@ -118,15 +118,18 @@ std::string key_id_text(const KeyId& id) {
     out += digits[id[k] >> 4u];
     out += digits[id[k] & 15u];
   }
-  return out;
+  // minisign prints the number without leading zeros, so one id in sixteen is shorter there.
+  const std::size_t zeros = std::min(out.find_first_not_of('0'), out.size() - min_key_id_digits);
+  return out.substr(zeros);
 }
 
 Result<KeyId> parse_key_id(std::string_view text, const std::string& file, const std::string& field) {
   std::uint64_t value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-  if (text.size() != 16 || code != std::errc{} || end != text.data() + text.size())
+  if (text.size() < min_key_id_digits || text.size() > 2 * sizeof(KeyId) || code != std::errc{} ||
+      end != text.data() + text.size())
     return fail(file, field, "'" + std::string(text.substr(0, 40)) + "' is no key id",
-                "write the 16 hexadecimal digits that minisign prints");
+                "write the (up to 16) hexadecimal digits that minisign prints");
   KeyId id{};
   std::memcpy(id.data(), &value, id.size());
   return id;

@@ -22,9 +22,11 @@ inline constexpr std::size_t max_trusted_comment = 1024;
 
 /// Eight bytes that name a key pair; chance, no secret.
 using KeyId = std::array<std::uint8_t, 8>;
-/// As minisign prints it: 16 hexadecimal digits, upper case, the last byte first.
+/// A shorter one is a slip of the hand: chance gives an id so many leading zeros once in 2^32 keys.
+inline constexpr std::size_t min_key_id_digits = 8;
+/// As minisign prints it: up to 16 hexadecimal digits without leading zeros, upper case, the last byte first.
 [[nodiscard]] std::string key_id_text(const KeyId& id);
-/// Error (`file`, `field`): not 16 hexadecimal digits.
+/// With leading zeros or without. Error (`file`, `field`): not min_key_id_digits to 16 hexadecimal digits.
 [[nodiscard]] Result<KeyId> parse_key_id(std::string_view text, const std::string& file, const std::string& field);
 
 struct PublicKey {

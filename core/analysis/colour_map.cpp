@@ -59,6 +59,11 @@ dvec3 reading(const Brdf& brdf, const ColourMapSettings& settings, const dvec3& 
   return factor;
 }
 
+/// Index of a node in a map this wide.
+std::size_t node_at(int x, int y, int width) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
 /// Holes take the mean of their filled neighbours, ring by ring.
 bool fill(std::vector<dvec3>& nodes, int width, int height) {
   for (;;) {
@@ -66,14 +71,14 @@ bool fill(std::vector<dvec3>& nodes, int width, int height) {
     bool holes = false;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const auto at = static_cast<std::size_t>(y * width + x);
+        const std::size_t at = node_at(x, y, width);
         if (finite(nodes[at])) continue;
         holes = true;
         dvec3 sum(0.0);
         int count = 0;
         for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
           for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u)
-            if (const dvec3& near = nodes[static_cast<std::size_t>(v * width + u)]; finite(near)) {
+            if (const dvec3& near = nodes[node_at(u, v, width)]; finite(near)) {
               sum += near;
               ++count;
             }
@@ -110,7 +115,7 @@ Result<ColourMap> colour_map_of(const Brdf& brdf, const ColourMapSettings& setti
       const dvec3 forth = reading(brdf, settings, at.in, at.out), back = reading(brdf, settings, at.out, at.in);
       const dvec3 mean = finite(forth) && finite(back) ? 0.5 * (forth + back) : finite(forth) ? forth : back;
       // max(NaN, 0) would be 0: a hole stays one.
-      nodes[static_cast<std::size_t>(row * edge + column)] = finite(mean) ? glm::max(mean, dvec3(0.0)) : mean;
+      nodes[node_at(column, row, edge)] = finite(mean) ? glm::max(mean, dvec3(0.0)) : mean;
     }
   if (!fill(nodes, edge, height))
     return fail("", "colour map", "the BRDF has no finite value in the plane of incidence", "measure in the plane");

@@ -42,8 +42,8 @@ void take_flakes_out(const Capture& capture, core::ColourTable& table) {
   if (!flakes) return;
   const double step = 0.5 * std::numbers::pi / (table.num_theta - 1);
   for (std::size_t k = 0; k < table.linear.size(); ++k) {
-    const double theta_h = static_cast<double>(k % table.num_theta) * step;
-    const double theta_i = static_cast<double>(k / table.num_theta) * step;
+    const std::size_t column = k % table.num_theta, row = k / table.num_theta;
+    const double theta_h = static_cast<double>(column) * step, theta_i = static_cast<double>(row) * step;
     const glm::dvec3 mean = flakes(theta_h, theta_i);
     for (int c = 0; c < 3; ++c) table.linear[k][c] = std::max(0.0f, table.linear[k][c] - static_cast<float>(mean[c]));
   }

@@ -72,8 +72,7 @@ TEST_F(AngleTable, LabOfSixAngles) {
 TEST_F(AngleTable, DialectsSayTheSame) {
   const Capture comma = good("angle,L,a,b\n15as45,92.1,-1.5,-18\n110as45,20,1.5,-11\n");
   const std::vector<std::string> others = {
-      "\xef\xbb\xbf"
-      "angle;L*;a*;b*\r\n15as45;92,1;-1,5;-18\r\n110as45;20;1,5;-11\r\n",
+      std::string("\xef\xbb\xbf") + "angle;L*;a*;b*\r\n15as45;92,1;-1,5;-18\r\n110as45;20;1,5;-11\r\n",
       "b\tangle\tL\tdate\ta\n-18\t15as45\t92.1\tMay 3\t-1.5\n-11\t110as45\t20\tMay 3\t1,5\n",
       "\"angle\",\"L\",\"a\",\"b\",,\n\"15as45\",\"92.1\",-1.5,-18,,\n\n\"110as45\",20,+1.5,-11,,\n",
       "light_deg,aspecular_deg,L,a,b\n45,15,92.1,-1.5,-18\n45,110,20,1.5,-11\n",

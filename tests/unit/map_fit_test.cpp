@@ -29,7 +29,8 @@ Capture flop_paint(double ior) {
   constexpr std::uint16_t edge = 46;
   core::ColourTable table{edge, std::vector<glm::vec3>(std::size_t{edge} * edge)};
   for (std::size_t k = 0; k < table.linear.size(); ++k) {
-    const double h = static_cast<double>(k % edge) * 2.0 * rad, d = static_cast<double>(k / edge) * 2.0 * rad;
+    const std::size_t column = k % edge, row = k / edge;
+    const double h = static_cast<double>(column) * 2.0 * rad, d = static_cast<double>(row) * 2.0 * rad;
     table.linear[k] = glm::vec3(glm::dvec3(0.9, 0.6, 0.3) * std::exp(-h * h / 0.2) + glm::dvec3(0.02, 0.05, 0.1) * d);
   }
   capture.analytic.table = std::move(table);

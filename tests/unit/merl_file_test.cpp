@@ -177,7 +177,7 @@ TEST(MerlFile, OnDiskOnlyMerlsOwnSizeIsRead) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().field, "dimensions");
   EXPECT_EQ(other.error().file, (folder / "small.binary").string());
-  std::ofstream(folder / "huge.binary");
+  testing::write_bytes(folder / "huge.binary", "", 0);
   std::filesystem::resize_file(folder / "huge.binary", std::uintmax_t{1} << 36);  // sparse: takes no room
   EXPECT_FALSE(read_merl(folder / "huge.binary"));
   EXPECT_FALSE(read_merl(folder / "none.binary"));

@@ -72,7 +72,7 @@ TEST_F(RealMinisign, WhatIsSignedHereVerifiesThere) {
   std::ofstream(folder_ / "file.minisig") << signature_text(secret->sign(hash(), "id=summer serial=12"));
   EXPECT_TRUE(shell("minisign -V -p key.pub -m file")) << read("out.txt");
   EXPECT_NE(read("out.txt").find("id=summer serial=12"), std::string::npos);
-  EXPECT_NE(read("key.pub").find(key_id_text(secret->id())), std::string::npos);
+  EXPECT_NE(read("key.pub").find(" " + key_id_text(secret->id()) + "\n"), std::string::npos) << read("key.pub");
   std::ofstream(folder_ / "file", std::ios::app) << "x";
   EXPECT_FALSE(shell("minisign -V -p key.pub -m file"));
 }
@@ -153,10 +153,17 @@ TEST(Minisign, NonsenseIsRefusedWithoutHarm) {
 }
 
 TEST(KeyIds, AreWrittenAsMinisignPrintsThem) {
-  const KeyId id{0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0x01};
-  EXPECT_EQ(key_id_text(id), "0123456789ABCDEF");
-  EXPECT_EQ(parse_key_id("0123456789ABCDEF", "f", "line 1").value(), id);
-  for (const char* bad : {"", "0123456789ABCDE", "0123456789ABCDEFF", "0x23456789ABCDEF", "0123456789ABCDEG"})
+  const KeyId id{0xef, 0xcd, 0xab, 0x89, 0x67, 0x45, 0x23, 0xf1};
+  EXPECT_EQ(key_id_text(id), "F123456789ABCDEF");
+  EXPECT_EQ(parse_key_id("F123456789ABCDEF", "f", "line 1").value(), id);
+  // One id in sixteen begins with a zero, which minisign leaves out.
+  const KeyId small{0xaf, 0x65, 0x37, 0x1f, 0xc2, 0xd5, 0x27, 0x0c};
+  EXPECT_EQ(key_id_text(small), "C27D5C21F3765AF");
+  EXPECT_EQ(parse_key_id("C27D5C21F3765AF", "f", "line 1").value(), small);
+  EXPECT_EQ(parse_key_id("0C27D5C21F3765AF", "f", "line 1").value(), small);
+  EXPECT_EQ(key_id_text({1}), "00000001");
+  EXPECT_EQ(parse_key_id(key_id_text({}), "f", "line 1").value(), KeyId{});
+  for (const char* bad : {"", "1234567", "0123456789ABCDEFF", "0x23456789ABCDEF", "0123456789ABCDEG"})
     EXPECT_FALSE(parse_key_id(bad, "f", "line 1")) << bad;
 }
 

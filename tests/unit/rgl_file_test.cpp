@@ -443,12 +443,12 @@ TEST(RglFile, FilesOnDiskAreNamed) {
   const auto missing = read_rgl(folder / "none.bsdf");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().file, (folder / "none.bsdf").string());
-  std::ofstream(folder / "empty.bsdf");
+  testing::write_bytes(folder / "empty.bsdf", "", 0);
   const auto empty = read_rgl(folder / "empty.bsdf");
   ASSERT_FALSE(empty);
   EXPECT_NE(empty.error().what.find("empty"), std::string::npos);
   EXPECT_FALSE(read_rgl(folder.path()));
-  std::ofstream(folder / "long.bsdf");
+  testing::write_bytes(folder / "long.bsdf", "", 0);
   std::filesystem::resize_file(folder / "long.bsdf", (64u << 20) + 1);
   const auto longer = read_rgl(folder / "long.bsdf");
   ASSERT_FALSE(longer);
