@@ -131,7 +131,7 @@ class Integrator {
       const Model::vec4& s = model_.u_lobe[number];
       rho = vec3(s.x, s.y, s.z) *
             (model_.fresnel_schlick(g.ho, s.w) *
-             model_.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, model_.u_inv_m[number])) *
+             model_.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, model_.u_inv_m[number], 1.0f)) *
             chi(g);
     }
     return rho * (through_coat(i.z) * eta * eta * in.z * 4.0f * ho / half.density);

@@ -4,7 +4,7 @@
 // with constant bounds; no names that begin with gl_. What the surroundings provide, in both languages:
 //   uniforms     u_diffuse, u_lobe[3], u_inv_m, u_coat_ior, u_refraction_ior, u_table_size,
 //                u_slice_count, u_level_count, u_bins_per_rad, u_flake_cells, u_lab_lo, u_lab_span
-//   constants    LINEAR_FROM_XYZ_R/G/B (vec3, white folded in), LAB_DELTA, LOBES
+//   constants    LINEAR_FROM_XYZ_R/G/B (vec3, white folded in), LAB_DELTA, MAX_EXPONENT, LEAST, LOBES
 //   fetches      fetch_chi, fetch_mean, fetch_slice, fetch_rank, fetch_corner, fetch_random
 //
 // All reflectances here are radiance factors rho = pi * f: a light that gives a white diffuser the radiance E/pi gives
@@ -26,7 +26,7 @@ real pow5(real x) {
 real fresnel_dielectric(real c, real ior) {
   real g2 = (ior - R(1.0)) * (ior + R(1.0)) + c * c;
   real g = sqrt(max(g2, R(0.0)));
-  real a = (ior - R(1.0)) * (ior + R(1.0)) / ((g + c) * (g + c) + R(1e-6));  // (g - c)/(g + c) without cancellation
+  real a = (ior - R(1.0)) * (ior + R(1.0)) / max((g + c) * (g + c), LEAST);  // (g - c)/(g + c) without cancellation
   real b_up = c * (g + c) - R(1.0);
   real b_down = c * (g - c) + R(1.0);
   real b = b_up / max(b_down, R(1e-4));
@@ -38,23 +38,27 @@ real fresnel_schlick(real ho, real f0) {
   return f0 + (R(1.0) - f0) * pow5(clamp(R(1.0) - ho, R(0.0), R(1.0)));
 }
 
-// The direction inside a coat of index eta >= 1 (Snell); eta = 1 changes nothing.
+// The direction inside a coat of index eta >= 1 (Snell); eta = 1 changes nothing. cos^2 inside is 1 - (1 - c^2)/eta^2,
+// written without its cancellation: at grazing angles and eta = 1 16 bits would keep nothing of c.
 vec3 refract_into(vec3 d, vec3 n, real eta) {
   real c = dot(n, d);
-  real cos2 = R(1.0) - (R(1.0) - c * c) / (eta * eta);
+  real cos2 = ((eta - R(1.0)) * (eta + R(1.0)) + c * c) / (eta * eta);
   return (d - n * c) * (R(1.0) / eta) + n * sqrt(max(cos2, R(0.0)));
 }
 
 // Beckmann D * G / (i_z o_z) of one lobe, without s and F. tan_h = tan(theta_h), nh = n.h, ho = h.o.
-// D = exp(-tan^2/m^2) / (m^2 nh^4), kept as one power of two: with m = 1e-3, 1/m^2 = 1e6 does not fit 16 bits but its
-// logarithm does. The ratio tan/m is clamped at 16, where exp(-256) is 0 in every format, so that its square fits.
-// G is the V-cavity term (Cook & Torrance 1982, eq. 8). The exponent is clamped below 16 - 2^-6: 65504 is the largest
-// 16-bit value.
-real lobe_shape(real tan_h, real nh, real ho, real iz, real oz, real inv_m) {
+// D = exp(-tan^2/m^2) / (m^2 nh^4). All of it is one power of two: with m = 1e-3, 1/m^2 = 1e6 does not fit 16 bits, nor
+// does 1/(i_z o_z) at grazing angles, but their logarithms do. The ratio tan/m is clamped at 16, where exp(-256) is 0 in
+// every format, so that its square fits. G is the V-cavity term (Cook & Torrance 1982, eq. 8), kept above 0 for its
+// logarithm. `through` is what the coat lets pass of it, at least LEAST: beside a grazing peak of 1e6 stands a coat that
+// passes 4e-4, and 16 bits hold neither. MAX_EXPONENT and LEAST come from the surroundings. In 16 bits they are 15, so
+// that lobes of s F <= 1 sum to less than 65504 (what that cuts off is 400 times white at 89.7 degrees), and 6.2e-5, the
+// least that is held in full; else they are out of every lobe's reach.
+real lobe_shape(real tan_h, real nh, real ho, real iz, real oz, real inv_m, real through) {
   real x = min(tan_h * inv_m, R(16.0));
   real g = min(R(1.0), R(2.0) * nh * min(iz, oz) / max(ho, MIN_COSINE));
   real e = R(2.0) * log2(inv_m) - x * x * R(1.4426950408889634) - R(4.0) * log2(max(nh, MIN_COSINE));
-  return exp2(e) * g / (iz * oz);
+  return exp2(min(e + (log2(max(g, LEAST) / iz) + log2(through / oz)), MAX_EXPONENT));
 }
 
 // Everything about one pair of directions that the terms below share. Angles in radians.
@@ -86,21 +90,21 @@ Geometry paint_geometry(vec3 n, vec3 i, vec3 o) {
   return g;
 }
 
-// a + sum of lobes, without chi: the radiance factor of the smooth part.
-vec3 lobes_factor(Geometry g) {
-  vec3 sum = u_diffuse;
+// a + sum of lobes, without chi, times `through` > 0: the radiance factor of the smooth part.
+vec3 lobes_factor(Geometry g, real through) {
+  vec3 sum = u_diffuse * through;
   if (g.iz > MIN_COSINE && g.oz > MIN_COSINE) {
 #if LOBES > 0
     sum += make_vec3(u_lobe[0]) *
-           (fresnel_schlick(g.ho, u_lobe[0].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.x));
+           (fresnel_schlick(g.ho, u_lobe[0].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.x, through));
 #endif
 #if LOBES > 1
     sum += make_vec3(u_lobe[1]) *
-           (fresnel_schlick(g.ho, u_lobe[1].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.y));
+           (fresnel_schlick(g.ho, u_lobe[1].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.y, through));
 #endif
 #if LOBES > 2
     sum += make_vec3(u_lobe[2]) *
-           (fresnel_schlick(g.ho, u_lobe[2].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.z));
+           (fresnel_schlick(g.ho, u_lobe[2].w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, u_inv_m.z, through));
 #endif
   }
   return sum;
@@ -158,11 +162,17 @@ real from_bytes(real low, real high) {
 #define FLAKE_CELLS 4
 #endif
 
-// The values of cell (h, i) in x y and of its neighbour (h + 1, i) in z w: the texture holds both (paint_textures.hpp).
-// Cells and levels look at other places of it; no two of 91 x 16 cells and 13 levels at the same.
-vec4 random_pair(vec2 cell, real level, real h, real i) {
+// The value of cell (h, i), low and high byte. Cells and levels look at other places of the texture; no two of 91 x 16
+// cells and 13 levels at the same.
+vec2 random_value(vec2 cell, real level, real h, real i) {
   return fetch_random(cell.x + R(203.0) * level + R(129.0) * h + R(231.0) * i,
                       cell.y + R(311.0) * level + R(187.0) * h + R(227.0) * i);
+}
+// Those of cell (h, i) in x y and of its neighbour (h + 1, i) in z w.
+vec4 random_pair(vec2 cell, real level, real h, real i) {
+  vec2 here = random_value(cell, level, h, i);
+  vec2 next = random_value(cell, level, h + R(1.0), i);
+  return vec4(here.x, here.y, next.x, next.y);
 }
 
 // The Gaussian value of a texel at these angles, in bins. The bytes stand for -4.75 to 4.75: 1 in 490,000 lies outside.
@@ -170,7 +180,7 @@ real flake_gaussian(vec2 cell, real level, real fh, real fi) {
   real ch = fh * u_flake_cells.x;
   real ci = fi * u_flake_cells.y;
 #if FLAKE_CELLS == 1
-  vec4 t = random_pair(cell, level, floor(ch + R(0.5)), floor(ci + R(0.5)));
+  vec2 t = random_value(cell, level, floor(ch + R(0.5)), floor(ci + R(0.5)));
   return R(9.5) * (from_bytes(t.x, t.y) - R(0.5));
 #else
   real h = floor(ch);
@@ -206,9 +216,12 @@ real flake_depth(real g) {
 // low bytes of two Gaussian values, which are uniform. The third comes from both: fract(97 y + 57 z) is uniform, and
 // independent of each of them alone.
 vec4 flake_random(vec2 cell, real level, real fh, real fi) {
-  vec4 t = fetch_random(cell.x + R(203.0) * level + R(229.0), cell.y + R(311.0) * level + R(257.0));
-  real l = fract(R(97.0) * t.x + R(57.0) * t.z);
-  return vec4(flake_depth(flake_gaussian(cell, level, fh, fi)), l, t.x, t.z);
+  real x = cell.x + R(203.0) * level + R(229.0);
+  real y = cell.y + R(311.0) * level + R(257.0);
+  vec2 one = fetch_random(x, y);
+  vec2 two = fetch_random(x + R(129.0), y + R(187.0));
+  real l = fract(R(97.0) * one.x + R(57.0) * two.x);
+  return vec4(flake_depth(flake_gaussian(cell, level, fh, fi)), l, one.x, two.x);
 }
 
 // One slice at one level: rank -> tuple -> cuboid -> Lab -> linear sRGB.
@@ -303,14 +316,14 @@ vec3 paint_factor(vec3 n, vec3 i, vec3 o, vec2 surface_texel, real lod, real sho
   }
   real through = R(1.0);
 #if HAS_COAT
-  through = (R(1.0) - fresnel_dielectric(ci, u_coat_ior)) * (R(1.0) - fresnel_dielectric(co, u_coat_ior));
+  through = max((R(1.0) - fresnel_dielectric(ci, u_coat_ior)) * (R(1.0) - fresnel_dielectric(co, u_coat_ior)), LEAST);
 #endif
 #if HAS_REFRACTION
   Geometry g = paint_geometry(n, refract_into(i, n, u_refraction_ior), refract_into(o, n, u_refraction_ior));
 #else
   Geometry g = paint_geometry(n, i, o);
 #endif
-  vec3 factor = lobes_factor(g);
+  vec3 factor = lobes_factor(g, through);
 #if HAS_TABLE
   factor *= chi_factor(g.theta_h, g.theta_i);
 #endif
@@ -319,10 +332,10 @@ vec3 paint_factor(vec3 n, vec3 i, vec3 o, vec2 surface_texel, real lod, real sho
 #endif
 #if HAS_FLAKES
   if (show_flakes > R(0.5)) {
-    factor += flake_factor(g.theta_h, g.theta_i, surface_texel, lod);
+    factor += flake_factor(g.theta_h, g.theta_i, surface_texel, lod) * through;
   } else {
-    factor += flake_mean(g.theta_h, g.theta_i);
+    factor += flake_mean(g.theta_h, g.theta_i) * through;
   }
 #endif
-  return factor * through;
+  return factor;
 }

@@ -15,12 +15,17 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <span>
+#include <type_traits>
 
 #include "core/colour.hpp"
 #include "core/environment.hpp"
 #include "core/paint_textures.hpp"
 
 namespace lackwerk::core {
+
+/// MAX_EXPONENT and LEAST of paint_model.glsl for floats of 32 bits and more, and for those of 16.
+inline constexpr double max_exponent_wide = 126.0, max_exponent_16 = 15.0;
+inline constexpr double least_wide = 1e-30, least_16 = 6.2e-5;
 
 /// T: float or double (16-bit types need their own vectors: glm accepts only IEC 559 scalars).
 template <class T, class V2 = glm::vec<2, T>, class V3 = glm::vec<3, T>, class V4 = glm::vec<4, T>>
@@ -29,6 +34,9 @@ struct PaintModel {
   using vec2 = V2;
   using vec3 = V3;
   using vec4 = V4;
+
+  /// The standard's floating types have 32 bits or more; others are taken to have 16.
+  static constexpr bool is_wide = std::is_floating_point_v<T>;
 
   // ---- uniforms, as the shader has them
   vec3 u_diffuse{T(0)};
@@ -51,26 +59,56 @@ struct PaintModel {
   const vec3 LINEAR_FROM_XYZ_G = linear_from_xyz_row(1);
   const vec3 LINEAR_FROM_XYZ_B = linear_from_xyz_row(2);
   const real LAB_DELTA = T(lab_delta);
+  /// Largest power of two a lobe may have, and the least number that is held in full: see lobe_shape.
+  const real MAX_EXPONENT = T(is_wide ? max_exponent_wide : max_exponent_16),
+             LEAST = T(is_wide ? least_wide : least_16);
 
-  // ---- GLSL's built-in functions, at this scalar type
-  static real sqrt(real x) { return std::sqrt(x); }
-  static real exp2(real x) { return std::exp2(x); }
-  static real pow(real x, real y) { return std::pow(x, y); }
-  static real cos(real x) { return std::cos(x); }
-  static real sin(real x) { return std::sin(x); }
-  static real abs(real x) { return std::abs(x); }
-  static real log2(real x) { return std::log2(x); }
-  static real floor(real x) { return std::floor(x); }
-  static vec2 floor(vec2 v) { return vec2(std::floor(v.x), std::floor(v.y)); }
-  static real fract(real x) { return x - std::floor(x); }
-  static real atan(real y, real x) { return std::atan2(y, x); }
+  // ---- GLSL's built-in functions, at this scalar type; scalars of other namespaces bring their own
+  static real sqrt(real x) {
+    using std::sqrt;
+    return sqrt(x);
+  }
+  static real exp2(real x) {
+    using std::exp2;
+    return exp2(x);
+  }
+  static real pow(real x, real y) {
+    using std::pow;
+    return pow(x, y);
+  }
+  static real cos(real x) {
+    using std::cos;
+    return cos(x);
+  }
+  static real sin(real x) {
+    using std::sin;
+    return sin(x);
+  }
+  static real abs(real x) {
+    using std::abs;
+    return abs(x);
+  }
+  static real log2(real x) {
+    using std::log2;
+    return log2(x);
+  }
+  static real floor(real x) {
+    using std::floor;
+    return floor(x);
+  }
+  static vec2 floor(vec2 v) { return vec2(floor(v.x), floor(v.y)); }
+  static real fract(real x) { return x - floor(x); }
+  static real atan(real y, real x) {
+    using std::atan2;
+    return atan2(y, x);
+  }
   static real min(real a, real b) { return b < a ? b : a; }
   static real max(real a, real b) { return a < b ? b : a; }
   static vec3 max(vec3 a, vec3 b) { return vec3(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)); }
   static real clamp(real x, real lo, real hi) { return min(max(x, lo), hi); }
   static real mix(real a, real b, real t) { return a * (T(1) - t) + b * t; }
   static real dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-  static real length(vec3 a) { return std::sqrt(dot(a, a)); }
+  static real length(vec3 a) { return sqrt(dot(a, a)); }
   static vec3 cross(vec3 a, vec3 b) {
     return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
   }
@@ -92,8 +130,9 @@ struct PaintModel {
   vec4 fetch_slice(real bin_h, real bin_i) const { return texel(textures->slice_texel(index(bin_h), index(bin_i))); }
   vec4 fetch_rank(real step, real row) const { return texel(textures->rank_texel(index(step), index(row))); }
   vec4 fetch_corner(real x, real row) const { return texel(textures->corner_texel(index(x), index(row))); }
-  vec4 fetch_random(real x, real y) const {
-    return texel(textures->random_texel(static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)));
+  vec2 fetch_random(real x, real y) const {
+    const std::uint8_t* t = textures->random_texel(static_cast<std::int64_t>(x), static_cast<std::int64_t>(y));
+    return vec2(byte(t[0]), byte(t[1]));
   }
 
   vec4 fetch_environment(real x, real y) const {

@@ -48,15 +48,10 @@ std::vector<std::uint8_t> random_texture(std::uint64_t seed) {
     const std::uint64_t j = ((splitmix64(seed + k) >> 32) * (k + 1)) >> 32;
     std::swap(value[k], value[static_cast<std::size_t>(j)]);
   }
-  std::vector<std::uint8_t> out(count * 4);
+  std::vector<std::uint8_t> out(count * 2);
   for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t x = (k + random_step_x) % random_edge;
-    const std::size_t y = (k / random_edge + random_step_y) % random_edge;
-    const std::uint16_t here = value[k], next = value[y * random_edge + x];
-    out[4 * k] = static_cast<std::uint8_t>(here & 255);
-    out[4 * k + 1] = static_cast<std::uint8_t>(here >> 8);
-    out[4 * k + 2] = static_cast<std::uint8_t>(next & 255);
-    out[4 * k + 3] = static_cast<std::uint8_t>(next >> 8);
+    out[2 * k] = static_cast<std::uint8_t>(value[k] & 255);
+    out[2 * k + 1] = static_cast<std::uint8_t>(value[k] >> 8);
   }
   return out;
 }
@@ -117,15 +112,16 @@ const PaintTextures& no_textures() {
 }
 
 const std::uint8_t* PaintTextures::random_texel(std::int64_t x, std::int64_t y) const {
-  static constexpr std::uint8_t zero[4] = {0, 0, 0, 0};
+  static constexpr std::uint8_t zero[2] = {0, 0};
   if (random.empty()) return zero;
   constexpr std::int64_t mask = random_edge - 1;
-  return &random[static_cast<std::size_t>((y & mask) * random_edge + (x & mask)) * 4];
+  return &random[static_cast<std::size_t>((y & mask) * random_edge + (x & mask)) * 2];
 }
 
 PaintTextures make_static_textures(const InterpolatablePaint& paint) {
   PaintTextures out;
   out.row_count = paint.row_count();
+  out.asked_rows = std::max(paint.level_count - 1, 1) * paint.layout.slice_count();
   out.mean.assign(angle_grid * angle_grid * 4, 0);
   out.slice.assign(angle_grid * angle_grid * 4, 0);
   for (int i = 0; i < angle_grid; ++i)

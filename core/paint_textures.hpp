@@ -3,14 +3,15 @@
 // Why it exists: both sides must see the same quantised numbers, or their pictures could only agree by luck. Owns its
 // byte arrays; made once per pack, updated per realisation. One writer at a time, any number of readers in between.
 //
-// All are RGBA8 (core ES 2.0 has nothing wider). Sizes:
+// All but the last are RGBA8 (core ES 2.0 has nothing wider). Sizes:
 //   chi      table_size x table_size   sqrt(chi / chi_max) per channel, filtered linearly by the sampler, then squared
 //   mean     grid x grid               RGBE of the flakes' mean radiance factor at node (h, i); grid = 16
 //   slice    grid x grid               R = slice number, G = 255 where there is no slice
 //   rank     256 x rows                RankStep (rank_table.hpp)
 //   corner   3 width x rows            QuantisedCuboid: three texels a tuple, low byte first
-//   random   512 x 512                 R, G = a Gaussian value g, low byte first: (g / 9.5 + 0.5) * 65535;
-//                                      B, A = that of the texel random_step further on
+//   random   512 x 512                 LUMINANCE_ALPHA, two bytes: a Gaussian value g, low byte first:
+//                                      (g / 9.5 + 0.5) * 65535
+// Of ranks and corners the GPU gets asked_rows rows.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,7 @@
 
 namespace lackwerk::core {
 
-inline constexpr int random_edge = 512;  ///< a power of two: core ES 2.0 repeats no others
-/// Where the next random cell along theta_h looks; paint_model.glsl's random_pair steps by the same.
-inline constexpr int random_step_x = 129, random_step_y = 187;
+inline constexpr int random_edge = 512;       ///< a power of two: core ES 2.0 repeats no others
 inline constexpr double random_reach = 4.75;  ///< largest |g| the texture holds
 inline constexpr int angle_grid = 16;         ///< nodes 0..12 of num_theta = 12, and a border without flakes
 
@@ -35,7 +34,8 @@ struct PaintTextures {
   std::vector<std::uint8_t> chi;
   std::vector<std::uint8_t> mean;
   std::vector<std::uint8_t> slice;
-  int row_count = 0;  ///< 0: no flakes
+  int row_count = 0;   ///< 0: no flakes
+  int asked_rows = 0;  ///< the first ones, which shaders fetch: the last level is one texel, which `mean` knows
   std::vector<RankStep> rank;
   int width = 0;  ///< tuples per row
   std::vector<QuantisedCuboid> corner;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <string>
 
 #include "core/check.hpp"
 #include "core/colour.hpp"
-#include "core/level_balance.hpp"
+#include "core/flake_means.hpp"
+#include "core/realise_corners.hpp"
 
 namespace lackwerk::core {
 
@@ -179,208 +179,6 @@ void blend_analytic(const InterpolatablePaint& paint, const Weights& weights, An
   clamp_analytic(out);
 }
 
-/// Weighted corners of one paint's clusters of one row: four floats of minima (L, a, b, -), then four of maxima.
-using WeightedClusters = std::array<float, max_clusters_per_row * 8>;
-
-void weigh_clusters(std::span<const QuantisedCuboid> clusters, float lightness, float colour, WeightedClusters& out) {
-  float* to = out.data();
-  for (const QuantisedCuboid& cuboid : clusters) {
-    to[0] = lightness * static_cast<float>(cuboid.q[0]);
-    to[1] = colour * static_cast<float>(cuboid.q[2]);
-    to[2] = colour * static_cast<float>(cuboid.q[4]);
-    to[3] = 0.0f;
-    to[4] = lightness * static_cast<float>(cuboid.q[1]);
-    to[5] = colour * static_cast<float>(cuboid.q[3]);
-    to[6] = colour * static_cast<float>(cuboid.q[5]);
-    to[7] = 0.0f;
-    to += 8;
-  }
-}
-
-/// Blended corners of one row, minima and maxima apart. One spare float: each tuple is written four wide.
-struct RowCorners {
-  std::array<float, max_tuples_per_row * 3 + 1> lo;
-  std::array<float, max_tuples_per_row * 3 + 1> hi;
-  std::array<float, max_tuples_per_row> lightness_lo, lightness_hi;  ///< L once more, side by side
-};
-
-/// Scales a row's boxes to the mean luminance of level 0 of their slice (level_balance.hpp).
-void balance_row(double level0, double strength, std::span<const std::uint32_t> mass, const LabRange& range,
-                 RowCorners& corners) {
-  const std::size_t tuples = mass.size();
-  const double own = mean_luminance(std::span(corners.lightness_lo).first(tuples),
-                                    std::span(corners.lightness_hi).first(tuples), mass, range);
-  const LabGain gain(row_gain(level0, own, strength), range);
-  for (std::size_t t = 0; t < tuples; ++t)
-    for (auto* corner : {&corners.lo, &corners.hi}) {
-      float* q = corner->data() + 3 * t;
-      q[0] = gain.lightness(q[0]);
-      q[1] = gain.colour(q[1], 0);
-      q[2] = gain.colour(q[2], 1);
-    }
-}
-
-/// Takes colour out of a row's boxes: a and b scaled by 1 - white. Scaling about a = b = 0 commutes with the balance of
-/// levels, and L stays, so that luminance does too. A grid whose range leaves 0 out gives the nearest it has.
-void whiten_row(double white, const LabRange& range, std::size_t tuples, RowCorners& corners) {
-  const auto kept = static_cast<float>(1.0 - white);
-  std::array<float, 2> added{};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const auto c = static_cast<glm::length_t>(axis + 1);
-    const double span = static_cast<double>(range.hi[c]) - static_cast<double>(range.lo[c]);
-    // The grid's number for 0; a range without width has only one colour anyway.
-    const double zero = span > 0.0 ? -static_cast<double>(range.lo[c]) / span * 65535.0 : 0.0;
-    added[axis] = static_cast<float>(white * zero);
-  }
-  for (std::size_t t = 0; t < tuples; ++t)
-    for (auto* corner : {&corners.lo, &corners.hi})
-      for (std::size_t axis = 0; axis < 2; ++axis) {
-        float& q = (*corner)[3 * t + 1 + axis];
-        q = kept * q + added[axis];
-      }
-}
-
-/// Rounds to the 16-bit grid. Where extrapolation turned a box inside out, it has shrunk to its middle: that keeps
-/// min <= max, is continuous in the weights and leaves upright boxes untouched to the bit.
-void round_row(const RowCorners& corners, std::size_t tuples, QuantisedCuboid* out) {
-  static_assert(std::endian::native == std::endian::little, "min and max are stored as one 32-bit word");
-  std::array<std::uint32_t, max_tuples_per_row * 3> words;
-  constexpr float to_nearest = 0.5f;  // what follows is never negative
-  const std::size_t count = tuples * 3;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float middle = 0.5f * (corners.lo[i] + corners.hi[i]);
-    const float lo = std::min(corners.lo[i], middle);
-    const float hi = std::max(corners.hi[i], middle);
-    const int lo_q = static_cast<int>(std::min(std::max(lo, 0.0f), 65535.0f) + to_nearest);
-    const int hi_q = static_cast<int>(std::min(std::max(hi, 0.0f), 65535.0f) + to_nearest);
-    words[i] = static_cast<std::uint32_t>(lo_q) | static_cast<std::uint32_t>(hi_q) << 16;
-  }
-  for (std::size_t t = 0; t < tuples; ++t)
-    out[t] = std::bit_cast<QuantisedCuboid>(std::array{words[3 * t], words[3 * t + 1], words[3 * t + 2]});
-}
-
-/// Far beyond any useful extrapolation; keeps every sum below finite.
-float bounded(double weight) { return static_cast<float>(std::clamp(weight, -1e6, 1e6)); }
-
-void realise_corners(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out) {
-  const std::size_t rows = static_cast<std::size_t>(paint.row_count());
-  const std::size_t paints = paint.paints.size();
-  std::size_t width = 0;
-  for (std::size_t row = 0; row < rows; ++row)
-    width = std::max<std::size_t>(width, paint.tuple_begin[row + 1] - paint.tuple_begin[row]);
-  check_at_most(width, static_cast<std::size_t>(max_tuples_per_row), "tuples of a row");
-  out.width = static_cast<int>(width);
-  out.corners.resize(rows * width);
-
-  std::array<WeightedClusters, max_paints> weighted;
-  RowCorners corners;
-  const double strength = balance_strength(weights.flake_lightness);
-  const double white = std::clamp(weights.flake_white, 0.0, 1.0);
-  const auto slices = static_cast<std::size_t>(paint.layout.slice_count());
-  out.level0_luminance.resize(strength > 0.0 ? slices : 0);
-  std::size_t slice = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t begin = paint.tuple_begin[row];
-    const std::size_t tuples = paint.tuple_begin[row + 1] - begin;
-    std::array<const std::uint8_t*, max_paints> cluster_of{};
-    for (std::size_t k = 0; k < paints; ++k) {
-      const auto& part = paint.paints[k];
-      const std::size_t clusters = part.cluster_begin[row + 1] - part.cluster_begin[row];
-      check_at_most(clusters, static_cast<std::size_t>(max_clusters_per_row), "clusters of a row");
-      weigh_clusters(part.clusters.subspan(part.cluster_begin[row], clusters), bounded(weights.flake_lightness[k]),
-                     bounded(weights.flake_colour[k]), weighted[k]);
-      cluster_of[k] = part.tuple_cluster.data() + begin;
-    }
-    for (std::size_t t = 0; t < tuples; ++t) {
-      float sum[8] = {};
-      for (std::size_t k = 0; k < paints; ++k) {
-        const float* from = weighted[k].data() + std::size_t{8} * cluster_of[k][t];
-        for (int i = 0; i < 8; ++i) sum[i] += from[i];
-      }
-      for (std::size_t i = 0; i < 4; ++i) corners.lo[3 * t + i] = sum[i];
-      for (std::size_t i = 0; i < 4; ++i) corners.hi[3 * t + i] = sum[4 + i];
-      corners.lightness_lo[t] = sum[0];
-      corners.lightness_hi[t] = sum[4];
-    }
-    if (strength > 0.0) {
-      const auto mass = paint.mass.subspan(begin, tuples);
-      if (row < slices)
-        out.level0_luminance[row] = mean_luminance(std::span(corners.lightness_lo).first(tuples),
-                                                   std::span(corners.lightness_hi).first(tuples), mass, paint.range);
-      else
-        balance_row(out.level0_luminance[slice], strength, mass, paint.range, corners);
-    }
-    if (white > 0.0) whiten_row(white, paint.range, tuples, corners);
-    QuantisedCuboid* to = out.corners.data() + row * width;
-    round_row(corners, tuples, to);
-    std::fill(to + tuples, to + width, QuantisedCuboid{});
-    if (++slice == slices) slice = 0;
-  }
-}
-
-/// The part of E[lab_inverse(s)] that the cube s^3 does not have: 0 above the toe. s = c + U1 + U2 with U1, U2 uniform
-/// in +-h1, +-h2. With u = delta - s > 0 the toe is s^3 + r(u), r(u) = u^3 - 3 delta u^2, so its mean is a difference
-/// of antiderivatives of r: exact, up to rounding (boxes thinner than 1e-7 count as flat, error below 1e-14).
-double toe_mean(double c, double h1, double h2) {
-  constexpr double d = lab_delta;
-  constexpr double flat = 1e-7;
-  const auto first = [](double s) {  // integral of r from 0 to u
-    const double u = std::max(d - s, 0.0);
-    return u * u * u * (u / 4.0 - d);
-  };
-  const auto second = [](double s) {  // and once more
-    const double u = std::max(d - s, 0.0);
-    return u * u * u * u * (u / 20.0 - d / 4.0);
-  };
-  if (h1 < h2) std::swap(h1, h2);
-  if (h1 < flat) {
-    const double u = std::max(d - c, 0.0);
-    return u * u * (u - 3.0 * d);
-  }
-  if (h2 < flat) return (first(c - h1) - first(c + h1)) / (2.0 * h1);
-  return (second(c - h1 - h2) - second(c - h1 + h2) - second(c + h1 - h2) + second(c + h1 + h2)) / (4.0 * h1 * h2);
-}
-
-/// E[lab_inverse(s)] for s as above. The third moment of a symmetric sum is c^3 + 3 c variance.
-double inverse_mean(double c, double h1, double h2) {
-  constexpr double d = lab_delta;
-  if (c + h1 + h2 <= d) return 3.0 * d * d * (c - 2.0 / 3.0 * d);
-  const double cube = c * (c * c + h1 * h1 + h2 * h2);
-  return c - h1 - h2 >= d ? cube : cube + toe_mean(c, h1, h2);
-}
-
-/// Mean linear RGB of each slice at level 0: L, a, b are independent and uniform in each box, XYZ are functions of
-/// L, of L and a, and of L and b, so that three one-dimensional means do.
-void realise_means(const InterpolatablePaint& paint, RealisedPaint& out) {
-  const std::size_t slices = static_cast<std::size_t>(paint.level_count > 0 ? paint.layout.slice_count() : 0);
-  out.flake_mean.assign(slices, glm::vec3(0.0f));
-  const glm::dvec3 lo = paint.range.lo;
-  const glm::dvec3 step = (glm::dvec3(paint.range.hi) - lo) / (2.0 * 65535.0);  // halves: middles are sums of two
-  for (std::size_t slice = 0; slice < slices; ++slice) {
-    const QuantisedCuboid* tuple = out.corners.data() + slice * static_cast<std::size_t>(out.width);
-    double xyz[3] = {};
-    std::uint64_t total = 0;
-    for (std::size_t t = paint.tuple_begin[slice]; t < paint.tuple_begin[slice + 1]; ++t, ++tuple) {
-      const auto& q = tuple->q;
-      const double mass = paint.mass[t];
-      const double y = (lo.x + step.x * (q[0] + q[1]) + 16.0) / 116.0;
-      const double y_half = step.x * (q[1] - q[0]) / 116.0;
-      const double a = (lo.y + step.y * (q[2] + q[3])) / 500.0;
-      const double b = (lo.z + step.z * (q[4] + q[5])) / 200.0;
-      xyz[0] += mass * inverse_mean(y + a, y_half, step.y * (q[3] - q[2]) / 500.0);
-      xyz[1] += mass * inverse_mean(y, y_half, 0.0);
-      xyz[2] += mass * inverse_mean(y - b, y_half, step.z * (q[5] - q[4]) / 200.0);
-      total += paint.mass[t];
-    }
-    if (total == 0) continue;
-    for (int c = 0; c < 3; ++c) xyz[c] *= white_xyz[c] / static_cast<double>(total);
-    for (int c = 0; c < 3; ++c) {
-      const double value = xyz_to_rgb[c][0] * xyz[0] + xyz_to_rgb[c][1] * xyz[1] + xyz_to_rgb[c][2] * xyz[2];
-      out.flake_mean[slice][c] = static_cast<float>(std::max(value, 0.0));
-    }
-  }
-}
-
 Result<void> check_group(const std::vector<double>& group, std::size_t paints, const char* field) {
   if (group.size() != paints)
     return fail({}, field, std::to_string(group.size()) + " weights for " + std::to_string(paints) + " paints",
@@ -441,8 +239,22 @@ void realise(const InterpolatablePaint& paint, const Weights& weights, RealisedP
   check_equal(weights.flake_lightness.size(), paint.paints.size(), "flake lightness weights");
   check_equal(weights.flake_colour.size(), paint.paints.size(), "flake colour weights");
   blend_analytic(paint, weights, out.analytic);
-  realise_corners(paint, weights, out);
+  realise_flakes(paint, weights, out);
+}
+
+void realise_flakes(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out) {
+  realise_flake_means(paint, weights, out);
+  realise_flake_levels(paint, weights, 1, paint.level_count, out);
+}
+
+void realise_flake_means(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out) {
+  realise_level0(paint, weights, out);
   realise_means(paint, out);
+}
+
+void realise_flake_levels(const InterpolatablePaint& paint, const Weights& weights, int first, int last,
+                          RealisedPaint& out) {
+  realise_levels(paint, weights, first, last, out);
 }
 
 }  // namespace lackwerk::core

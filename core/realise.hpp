@@ -43,4 +43,16 @@ struct RealisedPaint {
 /// no bit.
 void realise(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out);
 
+/// The part of realise() that depends on the flakes' weights: everything but `analytic`, which stays as it is.
+void realise_flakes(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out);
+
+/// What every picture needs of the flakes: their means, and for them the corners of level 0. The other levels' corners
+/// keep what they were.
+void realise_flake_means(const InterpolatablePaint& paint, const Weights& weights, RealisedPaint& out);
+
+/// The corners of levels [first, last), 1 <= first, after realise_flake_means with the same weights: only what a view
+/// shows. All levels from 1 on make realise_flakes of it.
+void realise_flake_levels(const InterpolatablePaint& paint, const Weights& weights, int first, int last,
+                          RealisedPaint& out);
+
 }  // namespace lackwerk::core

@@ -1,5 +1,5 @@
 // What paint_model.glsl expects from their surroundings, in GLSL: uniforms and texture fetches.
-// All textures are RGBA8; sizes and meaning stand in core/paint_textures.hpp. The C++ twin is core/paint_model.hpp.
+// All textures but u_random are RGBA8; sizes and meaning stand in core/paint_textures.hpp. The C++ twin is core/paint_model.hpp.
 
 uniform vec3 u_diffuse;
 uniform vec4 u_lobe[3];
@@ -73,20 +73,25 @@ uniform sampler2D u_slice;
 uniform sampler2D u_rank;
 uniform sampler2D u_corner;
 uniform sampler2D u_random;
-uniform vec2 u_corner_size;  // texels: 3 width, rows (the rank table has as many rows)
+uniform vec2 u_corner_size;  // texels: 3 width, asked rows (the rank table has as many)
 
 vec4 fetch_slice(float bin_h, float bin_i) { return texture2D(u_slice, (vec2(bin_h, bin_i) + 0.5) / ANGLE_GRID); }
 vec4 fetch_rank(float step_index, float row) {
   return texture2D(u_rank, vec2((step_index + 0.5) / RANK_STEPS, (row + 0.5) / u_corner_size.y));
 }
 vec4 fetch_corner(float x, float row) { return texture2D(u_corner, (vec2(x, row) + 0.5) / u_corner_size); }
-vec4 fetch_random(float x, float y) { return texture2D(u_random, (vec2(x, y) + 0.5) / RANDOM_EDGE); }
+// LUMINANCE_ALPHA: two bytes. One value a texel: pairs in one RGBA texel save a fetch and take twice the memory
+// (docs/decisions.md says what it costs).
+vec2 fetch_random(float x, float y) {
+  vec4 t = texture2D(u_random, (vec2(x, y) + 0.5) / RANDOM_EDGE);
+  return vec2(t.x, t.w);
+}
 #else
 // No light shows single flakes. A compiler may still not see that their code is dead (Mesa does not unroll the loop
 // over lights, which made the mean as dear as the flakes); "no slice anywhere" removes it for certain.
 vec4 fetch_slice(float bin_h, float bin_i) { return vec4(0.0, 1.0, 0.0, 0.0); }
 vec4 fetch_rank(float step_index, float row) { return vec4(0.0); }
 vec4 fetch_corner(float x, float row) { return vec4(0.0); }
-vec4 fetch_random(float x, float y) { return vec4(0.0); }
+vec2 fetch_random(float x, float y) { return vec2(0.0); }
 #endif
 #endif

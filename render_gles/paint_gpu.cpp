@@ -81,21 +81,23 @@ Result<PaintGpu> PaintGpu::create(const Context& context, const core::Interpolat
   out.textures_ = core::make_static_textures(paint);
   if (out.textures_.row_count > 0) {
     const int largest = context.info().max_texture_size;
-    const int needed = std::max({core::random_edge, 3 * core::max_tuples_per_row, out.textures_.row_count});
+    const int needed = std::max({core::random_edge, 3 * core::max_tuples_per_row, out.textures_.asked_rows});
     if (needed > largest)
       return fail("", "flakes",
                   "the pack needs textures of " + std::to_string(needed) + " texels an edge, " +
                       context.info().renderer + " has " + std::to_string(largest),
                   "draw without flakes, or build the pack with fewer mip levels");
-    out.upload(out.slice_, core::angle_grid, core::angle_grid, out.textures_.slice.data(), false, true);
-    out.upload(out.rank_, core::rank_table_steps, out.textures_.row_count, out.textures_.rank.data(), false, true);
-    out.upload(out.random_, core::random_edge, core::random_edge, out.textures_.random.data(), true, true);
+    out.upload(out.slice_, core::angle_grid, core::angle_grid, out.textures_.slice.data(), true);
+    out.upload(out.rank_, core::rank_table_steps, out.textures_.asked_rows, out.textures_.rank.data(), true);
+    out.upload(out.random_, core::random_edge, core::random_edge, out.textures_.random.data(), true, GL_REPEAT,
+               GL_LUMINANCE_ALPHA);
   }
   check_gl(context.gl(), "upload of a paint");
   return out;
 }
 
-void PaintGpu::upload(GlObject& texture, int width, int height, const void* rgba, bool repeat, bool resized) {
+void PaintGpu::upload(GlObject& texture, int width, int height, const void* texels, bool resized, GLenum wrap,
+                      GLenum format) {
   gl_->ActiveTexture(GL_TEXTURE0);
   if (!texture) {
     texture = make_texture(*gl_);
@@ -104,17 +106,18 @@ void PaintGpu::upload(GlObject& texture, int width, int height, const void* rgba
   gl_->BindTexture(GL_TEXTURE_2D, texture.id());
   gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
   if (resized) {
-    const GLint wrap = repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+    const auto edge = static_cast<GLint>(wrap);
     gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
-    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
-    gl_->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, edge);
+    gl_->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, edge);
+    gl_->TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, format, GL_UNSIGNED_BYTE, texels);
   } else {
-    gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, format, GL_UNSIGNED_BYTE, texels);
   }
   ++uploads_.uploads;
-  uploads_.bytes += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * 4;
+  uploads_.bytes += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
+                    std::uint64_t{format == GL_RGBA ? 4u : 2u};
 }
 
 Result<void> PaintGpu::upload_map(const PaintMap& map, int largest) {
@@ -125,7 +128,7 @@ Result<void> PaintGpu::upload_map(const PaintMap& map, int largest) {
                 "needs a texture of " + std::to_string(encoded->height) + " texels an edge, the driver has " +
                     std::to_string(largest),
                 "build the map with fewer nodes");
-  upload(map_, encoded->width, encoded->height, encoded->rgba.data(), false, true);
+  upload(map_, encoded->width, encoded->height, encoded->rgba.data(), true);
   map_edge_ = encoded->width;
   map_scale_ = encoded->scale;
   map_uniforms_ = map_uniforms(map);
@@ -135,14 +138,37 @@ Result<void> PaintGpu::upload_map(const PaintMap& map, int largest) {
 
 void PaintGpu::upload_chi() {
   if (textures_.table_size > 0 && map_edge_ == 0)
-    upload(chi_, textures_.table_size, textures_.table_size, textures_.chi.data(), false, false);
+    upload(chi_, textures_.table_size, textures_.table_size, textures_.chi.data(), false);
 }
 
-void PaintGpu::upload_flakes() {
+void PaintGpu::upload_flake_means() {
   if (textures_.row_count == 0) return;
-  upload(mean_, core::angle_grid, core::angle_grid, textures_.mean.data(), false, false);
-  upload(corner_, 3 * textures_.width, textures_.row_count, textures_.corner.data(), false, false);
+  upload(mean_, core::angle_grid, core::angle_grid, textures_.mean.data(), false);
   flake_m_ = core::flake_roughness(*paint_, textures_);
+}
+
+void PaintGpu::bring(int finest_level) {
+  if (textures_.row_count == 0) return;
+  const int first = std::max(finest_level, 0);
+  if (first >= current_from_) return;
+  std::swap(realised_.corners, textures_.corner);
+  core::realise_flake_levels(*paint_, weights_, std::max(first, 1), current_from_, realised_);
+  std::swap(realised_.corners, textures_.corner);
+  const int slices = paint_->layout.slice_count();
+  const int width = 3 * textures_.width;
+  if (!corner_) {
+    upload(corner_, width, textures_.asked_rows, textures_.corner.data(), true);
+  } else {
+    const int row = first * slices, rows = (current_from_ - first) * slices;
+    gl_->ActiveTexture(GL_TEXTURE0);
+    gl_->BindTexture(GL_TEXTURE_2D, corner_.id());
+    gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, row, width, rows, GL_RGBA, GL_UNSIGNED_BYTE,
+                       textures_.corner_texel(0, row));
+    count_upload(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows) * 4);
+  }
+  current_from_ = first;
+  check_gl(*gl_, "upload of single flakes");
 }
 
 Result<bool> PaintGpu::update(const core::Weights& weights) {
@@ -152,15 +178,17 @@ Result<bool> PaintGpu::update(const core::Weights& weights) {
   const bool flakes = first || weights.flake_lightness != weights_.flake_lightness ||
                       weights.flake_colour != weights_.flake_colour || weights.flake_white != weights_.flake_white;
   if (!base && !flakes) return false;
-  if (flakes) {
-    core::realise(*paint_, weights, realised_);
-  } else {
-    realised_.analytic = core::realise_analytic(*paint_, weights);
-    std::swap(realised_.corners, textures_.corner);  // update_textures swaps them back
-  }
+  // One buffer of corners: update_textures swaps it back.
+  std::swap(realised_.corners, textures_.corner);
+  if (base) realised_.analytic = core::realise_analytic(*paint_, weights);
+  if (flakes) core::realise_flake_means(*paint_, weights, realised_);
   core::update_textures(*paint_, realised_, textures_);
   if (base) upload_chi();
-  if (flakes) upload_flakes();
+  if (flakes) {
+    upload_flake_means();
+    // The last level is one texel, which is the mean.
+    current_from_ = std::max(paint_->level_count - 1, 1);
+  }
   weights_ = weights;
   check_gl(*gl_, "upload of a realised paint");
   return true;
@@ -204,7 +232,7 @@ void PaintGpu::apply(const GlApi& gl, const Program& program) const {
   number("u_chi_scale", textures_.chi_scale);
   if (textures_.row_count == 0) return;
   gl.Uniform2f(program.location("u_corner_size"), static_cast<float>(3 * textures_.width),
-               static_cast<float>(textures_.row_count));
+               static_cast<float>(textures_.asked_rows));
   number("u_slice_count", paint_->layout.slice_count());
   number("u_level_count", paint_->level_count);
   number("u_bins_per_rad", 1.0 / paint_->layout.bin_width_rad());
@@ -222,8 +250,8 @@ std::size_t PaintGpu::bytes() const {
   std::size_t sum =
       map_edge_ > 0 ? area(map_edge_, 2 * map_edge_ - 1) : area(textures_.table_size, textures_.table_size);
   if (textures_.row_count == 0) return sum;
-  sum += 2 * area(core::angle_grid, core::angle_grid) + area(core::rank_table_steps, textures_.row_count);
-  return sum + area(3 * textures_.width, textures_.row_count) + area(core::random_edge, core::random_edge);
+  sum += 2 * area(core::angle_grid, core::angle_grid) + area(core::rank_table_steps, textures_.asked_rows);
+  return sum + area(3 * textures_.width, textures_.asked_rows) + area(core::random_edge, core::random_edge) / 2;
 }
 
 std::vector<std::string> PaintGpu::explain() const {

@@ -36,9 +36,14 @@ class PaintGpu {
   [[nodiscard]] static Result<PaintGpu> create(const Context& context, const core::InterpolatablePaint& paint,
                                                const PaintMap* map = nullptr);
 
-  /// Realises the paint at these weights and uploads what changed. Returns whether anything did.
-  /// Error: weights that core::check_weights refuses; nothing has changed then.
+  /// Realises the paint at these weights, but for the single flakes, which wait for bring(), and uploads what changed.
+  /// Returns whether anything did. Error: weights that core::check_weights refuses; nothing has changed then.
   [[nodiscard]] Result<bool> update(const core::Weights& weights);
+
+  /// Makes the single flakes of this mip level and all coarser ones those of the present weights: before anything is
+  /// drawn that shows them. Realises and uploads the levels that are not yet. Most views are far from the finest level,
+  /// and many show no single flake at all.
+  void bring(int finest_level);
 
   /// Switches on what this pack needs, at any weights: lobes, table or map, flakes, coat, refraction.
   void add_features(Features& features) const;
@@ -61,7 +66,8 @@ class PaintGpu {
   [[nodiscard]] std::size_t bytes() const;
   /// Edge of a level-0 flake texel, mm; 0 without flakes.
   [[nodiscard]] float texel_mm() const { return paint_->texel_mm; }
-  /// The numbers the GPU sees, for tests and for the CPU model. Valid until the next update.
+  /// The numbers the GPU sees, for tests and for the CPU model. Valid until the next update; the corners are those of
+  /// the levels that bring() has brought.
   [[nodiscard]] const core::PaintTextures& textures() const { return textures_; }
   [[nodiscard]] const core::AnalyticPaint& analytic() const { return realised_.analytic; }
   /// core::flake_roughness at the present weights; 1 without flakes.
@@ -71,10 +77,11 @@ class PaintGpu {
 
  private:
   PaintGpu(const GlApi& gl, const core::InterpolatablePaint& paint) : gl_(&gl), paint_(&paint) {}
-  void upload(GlObject& texture, int width, int height, const void* rgba, bool repeat, bool resized);
+  void upload(GlObject& texture, int width, int height, const void* texels, bool resized,
+              GLenum wrap = GL_CLAMP_TO_EDGE, GLenum format = GL_RGBA);
   [[nodiscard]] Result<void> upload_map(const PaintMap& map, int largest);
   void upload_chi();
-  void upload_flakes();
+  void upload_flake_means();
 
   const GlApi* gl_;
   const core::InterpolatablePaint* paint_;
@@ -84,6 +91,7 @@ class PaintGpu {
   int lobes_ = 0;
   bool table_ = false, coat_ = false, refraction_ = false, diffuse_ = false;
   int narrow_ = 0;
+  int current_from_ = 0;  ///< corners of this level and coarser ones are those of weights_
   MapUse map_use_ = MapUse::none;
   MapUniforms map_uniforms_;
   int map_edge_ = 0;  ///< 0: no map

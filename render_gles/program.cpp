@@ -9,6 +9,7 @@
 #include "core/check.hpp"
 #include "core/colour.hpp"
 #include "core/environment.hpp"
+#include "core/paint_model.hpp"
 #include "render_gles/shader_texts.hpp"
 
 namespace lackwerk::gles {
@@ -38,10 +39,12 @@ std::string define(const char* name, int value) {
 }
 
 /// What paint_model.hpp gives the C++ side.
-std::string language_prelude() {
+std::string language_prelude(bool fragment_highp) {
   return "#define real float\n#define R(x) (x)\nvec3 make_vec3(vec4 v) { return v.xyz; }\n" +
          linear_row("LINEAR_FROM_XYZ_R", 0) + linear_row("LINEAR_FROM_XYZ_G", 1) + linear_row("LINEAR_FROM_XYZ_B", 2) +
-         "const float LAB_DELTA = " + literal(core::lab_delta) + ";\n";
+         "const float LAB_DELTA = " + literal(core::lab_delta) + ";\n" +
+         "const float MAX_EXPONENT = " + literal(fragment_highp ? core::max_exponent_wide : core::max_exponent_16) +
+         ";\n" + "const float LEAST = " + literal(fragment_highp ? core::least_wide : core::least_16) + ";\n";
 }
 
 std::string numbered(const std::string& source) {
@@ -211,7 +214,7 @@ std::string fragment_source(const Features& features, bool fragment_highp) {
 }
 
 std::string shader_prelude(bool fragment_highp) {
-  return "#version 100\n" + precision(fragment_highp) + language_prelude();
+  return "#version 100\n" + precision(fragment_highp) + language_prelude(fragment_highp);
 }
 
 GlObject link_program(const GlApi& gl, const std::string& vertex, const std::string& fragment,

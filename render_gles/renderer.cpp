@@ -222,6 +222,8 @@ void Renderer::draw_parts(const std::vector<const MeshBuffers::Draw*>& parts, co
 }
 
 void Renderer::draw_pass(const Frame& frame, const Pass& pass, const Framebuffer& target) {
+  if (paint_ && (pass.flake_lights > 0 || pass.sparkle_lights > 0 || pass.still_flakes))
+    bring_flakes(static_cast<int>(std::floor(finest_level(frame.view, frame.height))));
   std::vector<Box> boxes = boxes_;
   if (pass.mirrored)
     for (Box& box : boxes) {

@@ -72,6 +72,10 @@ class Renderer {
   /// Realises the paint at these weights and uploads what changed. Error: weights refused; nothing has changed then.
   [[nodiscard]] Result<void> update(const core::Weights& weights);
 
+  /// Makes the single flakes of this mip level and coarser ones those of the last update, as draw does for what its
+  /// view shows: for those who read or draw the paint's textures themselves. Needs set_paint and update before it.
+  void bring_flakes(int finest_level) { paint_->bring(finest_level); }
+
   /// Whether a draw with these values could differ from the last one into a picture of this size.
   [[nodiscard]] bool needs_draw(const View& view, const Lighting& lighting, const Framebuffer& target) const;
 

@@ -76,7 +76,7 @@ vec3 sampled_lobe(vec3 p, vec3 n, vec3 o, vec3 inside_o, vec4 lobe, real inv_m, 
   real density;
   real weight = lobe_direction(n, inside_o, 1.0 / inv_m, sample_place(part), i, g, density);
   if (weight <= 0.0) return vec3(0.0);
-  vec3 rho = lobe.xyz * (fresnel_schlick(g.ho, lobe.w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, inv_m));
+  vec3 rho = lobe.xyz * (fresnel_schlick(g.ho, lobe.w) * lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, inv_m, 1.0));
 #if HAS_TABLE
   rho *= chi_factor(g.theta_h, g.theta_i);
 #endif

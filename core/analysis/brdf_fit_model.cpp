@@ -55,7 +55,7 @@ std::string FitLayout::name(int parameter) const {
 LobeAtPoint lobe_at(const FitPoint& point, double m) {
   const double inv_m = 1.0 / m;
   Model model;  // only its functions are used
-  const double shape = model.lobe_shape(point.tan_h, point.nh, point.ho, point.iz, point.oz, inv_m);
+  const double shape = model.lobe_shape(point.tan_h, point.nh, point.ho, point.iz, point.oz, inv_m, 1.0);
   const double ratio = point.tan_h * inv_m;
   // ln D = -2 ln m - tan^2/m^2 + ...; beyond the clamp the lobe is 0 in any case.
   return {shape, shape * (2.0 * ratio * ratio - 2.0) * (ratio < max_tan_ratio ? 1.0 : 0.0)};
@@ -155,7 +155,7 @@ Brdf analytic_brdf(const AnalyticPaint& paint) {
   return [lobes, paint](const glm::dvec3& in, const glm::dvec3& out) mutable {
     if (!(in.z > 0.0 && out.z > 0.0)) return glm::dvec3(0.0);
     const auto g = lobes.paint_geometry({0.0, 0.0, 1.0}, in, out);
-    return lobes.lobes_factor(g) * chi_at(paint, g.theta_h, g.theta_i) / std::numbers::pi;
+    return lobes.lobes_factor(g, 1.0) * chi_at(paint, g.theta_h, g.theta_i) / std::numbers::pi;
   };
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "core/check.hpp"
+
 namespace lackwerk::core {
 namespace {
 
@@ -102,7 +104,9 @@ void cut(std::span<Spot> spots, double strength, int depth, std::vector<Environm
 
 }  // namespace
 
-std::vector<EnvironmentLight> median_cut(const OctahedralImage& map) {
+std::vector<EnvironmentLight> median_cut(const OctahedralImage& map, int halvings) {
+  check_at_most(0, halvings, "halvings of a map");
+  check_at_most(halvings, 16, "halvings of a map");
   std::vector<Spot> spots;
   spots.reserve(static_cast<std::size_t>(map.edge) * static_cast<std::size_t>(map.edge));
   for (int y = 0; y < map.edge; ++y) {
@@ -113,7 +117,8 @@ std::vector<EnvironmentLight> median_cut(const OctahedralImage& map) {
     }
   }
   std::vector<EnvironmentLight> lights;
-  cut(spots, 1.0, 6, lights);
+  lights.reserve(std::size_t{1} << static_cast<unsigned>(halvings));
+  cut(spots, 1.0, halvings, lights);
   return lights;
 }
 

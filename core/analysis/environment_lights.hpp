@@ -16,6 +16,7 @@ namespace lackwerk::core {
 /// directions instead of on a lat-long rectangle, so that no seam or pole cuts a lamp in two. A part that is one texel
 /// is halved in strength. Gives environment_light_count lights in the tree's order whose radiances sum to 1/pi times
 /// the map's integral over the sphere. Every direction is where its part's luminance has its centre.
-[[nodiscard]] std::vector<EnvironmentLight> median_cut(const OctahedralImage& map);
+/// `halvings`, in [0, 16]: another number of lights, 2^halvings; what an Environment holds takes the usual six.
+[[nodiscard]] std::vector<EnvironmentLight> median_cut(const OctahedralImage& map, int halvings = 6);
 
 }  // namespace lackwerk::core

@@ -71,20 +71,30 @@ std::vector<Key> morton_keys(std::span<const glm::vec3> lab, int depth, double& 
   return keys;
 }
 
-/// Least significant digit first, 11 bits a pass, skipping digits that never differ.
+/// Least significant digit first, of at most 12 bits (16 levels are four passes), counted all at once, skipping digits
+/// that never differ. 4096 open ends of a pass still fit the second cache.
 void radix_sort(std::vector<Key>& keys) {
-  constexpr int digit_bits = 11;
-  constexpr std::size_t digits = std::size_t{1} << digit_bits;
+  constexpr int most_bits = 12;
+  constexpr std::size_t most_digits = std::size_t{1} << most_bits;
+  constexpr int most_passes = (3 * 21 + most_bits - 1) / most_bits;
   std::uint64_t differing = 0;
   for (const Key& key : keys) differing |= key.morton ^ keys.front().morton;
+  const int passes = (std::bit_width(differing) + most_bits - 1) / most_bits;
+  if (passes == 0) return;
+  const int digit_bits = (std::bit_width(differing) + passes - 1) / passes;
+  const std::uint64_t mask = (std::uint64_t{1} << digit_bits) - 1;
+  std::array<std::array<std::uint32_t, most_digits>, most_passes> place{};
+  for (const Key& key : keys)
+    for (int pass = 0; pass < passes; ++pass)
+      ++place[static_cast<std::size_t>(pass)][key.morton >> (pass * digit_bits) & mask];
   std::vector<Key> other(keys.size());
-  for (int shift = 0; shift < 64; shift += digit_bits) {
-    if ((differing >> shift & (digits - 1)) == 0) continue;
-    std::array<std::uint32_t, digits> place{};
-    for (const Key& key : keys) ++place[key.morton >> shift & (digits - 1)];
+  for (int pass = 0; pass < passes; ++pass) {
+    const int shift = pass * digit_bits;
+    if ((differing >> shift & mask) == 0) continue;
+    std::array<std::uint32_t, most_digits>& ends = place[static_cast<std::size_t>(pass)];
     std::uint32_t sum = 0;
-    for (std::uint32_t& entry : place) sum += std::exchange(entry, sum);
-    for (const Key& key : keys) other[place[key.morton >> shift & (digits - 1)]++] = key;
+    for (std::uint32_t& entry : ends) sum += std::exchange(entry, sum);
+    for (const Key& key : keys) other[ends[key.morton >> shift & mask]++] = key;
     keys.swap(other);
   }
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/check.hpp"
 #include "core/environment.hpp"
 #include "core/paint_model.hpp"
 
@@ -16,9 +17,6 @@ namespace {
 
 /// Below this tangent nothing counts: the narrowest lobe (m = 1e-3) has 1e-6 of its energy there.
 constexpr double least_tangent = 1e-6;
-/// Nodes over the logarithm of tan(theta_h), 14 wide: 0.01 apart, where the narrowest feature (exp(-t^2/m^2)) is 1
-/// wide.
-constexpr int node_count = 1536;
 /// Candidates reach below what an engine can show, so that it can be told from what it can.
 constexpr double least_candidate = 2e-4;
 constexpr int candidate_count = 64;  ///< 14 % apart: the error has one valley, some 60 % wide at half its depth
@@ -36,7 +34,8 @@ struct Node {
 
 /// The paint along a line of half vectors: with o = n the light inside stands at twice their angle, and outside
 /// x = sin^2(theta_out) = eta^2 sin^2(2 theta_h) = 4 eta^2 t^2 / (1 + t^2)^2 with t = tan(theta_h); cos dw = pi dx.
-std::vector<Node> nodes_of(const AnalyticPaint& paint, const MeanFlakes& flakes, std::optional<double> clearcoat) {
+std::vector<Node> nodes_of(const AnalyticPaint& paint, const MeanFlakes& flakes, std::optional<double> clearcoat,
+                           int node_count) {
   AnalyticPaint bare = paint;
   bare.diffuse = dvec3(0.0);
   bare.table.reset();
@@ -47,7 +46,7 @@ std::vector<Node> nodes_of(const AnalyticPaint& paint, const MeanFlakes& flakes,
   const double from = std::log(least_tangent);
   const double step = (std::log(std::tan(0.5 * std::asin(1.0 / eta))) - from) / node_count;
   const double seen_through = 1.0 - model.fresnel_dielectric(1.0, paint.coat_ior);
-  std::vector<Node> out(node_count);
+  std::vector<Node> out(static_cast<std::size_t>(node_count));
   for (int k = 0; k < node_count; ++k) {
     Node& node = out[static_cast<std::size_t>(k)];
     const double t = std::exp(from + (k + 0.5) * step), t2 = t * t, c2 = 1.0 / (1.0 + t2);
@@ -59,7 +58,7 @@ std::vector<Node> nodes_of(const AnalyticPaint& paint, const MeanFlakes& flakes,
     const auto g = model.paint_geometry(n, dvec3(sine_in, 0.0, (1.0 - t2) * c2), n);
     const double through = seen_through * (1.0 - model.fresnel_dielectric(node.cosine, paint.coat_ior));
     node.engine_coat = clearcoat ? 1.0 - clearcoat_fresnel(1.0, *clearcoat) : through;
-    node.lobes = model.lobes_factor(g) * through;
+    node.lobes = model.lobes_factor(g, 1.0) * through;
     if (flakes) node.flakes = flakes(g.theta_h, g.theta_i) * through;
     node.luminance = luminance_of(node.lobes + node.flakes);
   }
@@ -154,8 +153,9 @@ double clearcoat_fresnel(double cosine, double factor) {
   return factor * PaintModel<double>().fresnel_schlick(cosine, 0.04);
 }
 
-GgxFit fit_ggx(const AnalyticPaint& paint, const MeanFlakes& flakes, std::optional<double> clearcoat) {
-  const std::vector<Node> nodes = nodes_of(paint, flakes, clearcoat);
+GgxFit fit_ggx(const AnalyticPaint& paint, const MeanFlakes& flakes, std::optional<double> clearcoat, int node_count) {
+  check_at_most(2, node_count, "nodes of a fit");
+  const std::vector<Node> nodes = nodes_of(paint, flakes, clearcoat, node_count);
   GgxFit fit;
   dvec3 of_lobes(0.0), of_flakes(0.0);
   double norm = 0.0;

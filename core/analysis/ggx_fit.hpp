@@ -33,6 +33,10 @@ using MeanFlakes = std::function<glm::dvec3(double theta_h, double theta_i)>;
 /// Unity 0.002, Filament 0.0020, three.js 0.0028.
 inline constexpr double least_engine_alpha = 3.6e-3;
 
+/// Nodes over the logarithm of tan(theta_h), 14 wide: 0.01 apart, where the narrowest feature (exp(-t^2/m^2)) is 1
+/// wide. What fewer would do: knob "ggx_samples" of `lackwerk report`.
+inline constexpr int ggx_nodes = 1536;
+
 /// Whether roughness and scale mean anything.
 enum class GgxOutcome {
   fitted,
@@ -58,8 +62,9 @@ struct GgxFit {
 /// filtered apart (their 3.3). Any paint inside the limits of AnalyticPaint.
 /// How the engine's coat weakens its lobe: `clearcoat` empty, (1 - F(i)) (1 - F(o)) of the paint's own coat (their eq.
 /// 9); a factor, 1 - clearcoat_fresnel(o, factor), on the way out alone, as KHR_materials_clearcoat does.
+/// `nodes`, at least 2: directions of light along the line, see ggx_nodes.
 [[nodiscard]] GgxFit fit_ggx(const AnalyticPaint& paint, const MeanFlakes& flakes = {},
-                             std::optional<double> clearcoat = {});
+                             std::optional<double> clearcoat = {}, int nodes = ggx_nodes);
 
 /// A narrow Beckmann lobe of roughness m below an index eta is best met by alpha = narrow_lobe_ratio eta m (without
 /// scale the problem has one solution; m eta below 0.02 is narrow to 1e-3).

@@ -1,19 +1,17 @@
 #include "core/analysis/transport.hpp"
 
-#include <lemon/network_simplex.h>
-#include <lemon/static_graph.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
+
+#include "core/analysis/transport_lemon.hpp"
+#include "core/analysis/transport_simplex.hpp"
 
 namespace lackwerk::core {
 
 namespace {
-
-using Graph = lemon::StaticDigraph;
-using Simplex = lemon::NetworkSimplex<Graph, std::int64_t, std::int64_t>;
 
 constexpr std::int64_t most_mass = std::int64_t{1} << 62;
 constexpr double most_far = 1e100;  // squares of distances stay finite
@@ -83,45 +81,32 @@ std::vector<std::int64_t> scaled_costs(const Side& source, const Side& target) {
   return scaled;
 }
 
-/// The plan between groups, by source group, then target group. Empty if the simplex did not end at an optimum.
-std::vector<PlanEntry> solve_groups(const Side& source, const Side& target, const std::vector<std::int64_t>& cost,
-                                    TransportPlan& plan) {
-  const std::size_t columns = target.groups.size();
-  std::vector<std::pair<int, int>> arcs;  // arc id = place in `cost`
-  for (std::size_t s = 0; s < source.groups.size(); ++s)
-    for (std::size_t t = 0; t < columns; ++t)
-      arcs.emplace_back(static_cast<int>(s), static_cast<int>(source.groups.size() + t));
-  Graph graph;
-  graph.build(static_cast<int>(source.groups.size() + columns), arcs.begin(), arcs.end());
-  const auto from = [&](std::size_t s) { return Graph::nodeFromId(static_cast<int>(s)); };
-  const auto to = [&](std::size_t t) { return Graph::nodeFromId(static_cast<int>(source.groups.size() + t)); };
-  Graph::NodeMap<std::int64_t> supply(graph);
-  Graph::ArcMap<std::int64_t> arc_cost(graph);
-  for (std::size_t s = 0; s < source.groups.size(); ++s) supply[from(s)] = source.groups[s].mass;
-  for (std::size_t t = 0; t < columns; ++t) supply[to(t)] = -target.groups[t].mass;
-  for (std::size_t i = 0; i < cost.size(); ++i) arc_cost[Graph::arcFromId(static_cast<int>(i))] = cost[i];
+std::vector<std::int64_t> group_masses(const Side& side) {
+  std::vector<std::int64_t> mass;
+  mass.reserve(side.groups.size());
+  for (const Side::Group& group : side.groups) mass.push_back(group.mass);
+  return mass;
+}
 
-  Simplex simplex(graph);
-  simplex.supplyMap(supply).costMap(arc_cost);
-  if (simplex.run() != Simplex::OPTIMAL) return {};
+/// Whether the plan is proven optimal; fills in the proof.
+bool certify(const TransportProblem& problem, const TransportSolution& solution, TransportPlan& plan) {
+  plan.primal = primal_objective(problem, solution.entries);
+  plan.dual = dual_objective(problem, solution.source_potential);
+  return plan.primal == plan.dual;
+}
 
-  std::vector<PlanEntry> entries;
-  for (std::size_t i = 0; i < cost.size(); ++i) {
-    const std::int64_t mass = simplex.flow(Graph::arcFromId(static_cast<int>(i)));
-    if (mass == 0) continue;
-    entries.push_back({static_cast<std::uint32_t>(i / columns), static_cast<std::uint32_t>(i % columns), mass});
-    plan.primal += Int128{mass} * cost[i];
-  }
-  // Feasible whatever the potentials of the sources are: each target takes the largest price they allow.
-  for (std::size_t s = 0; s < source.groups.size(); ++s)
-    plan.dual -= Int128{source.groups[s].mass} * simplex.potential(from(s));
-  for (std::size_t t = 0; t < columns; ++t) {
-    std::int64_t price = simplex.potential(from(0)) + cost[t];
-    for (std::size_t s = 1; s < source.groups.size(); ++s)
-      price = std::min(price, simplex.potential(from(s)) + cost[s * columns + t]);
-    plan.dual += Int128{target.groups[t].mass} * price;
-  }
-  return entries;
+/// The plan between groups, by source group, then target group. Empty if no solver ended at a proven optimum.
+std::vector<PlanEntry> solve_groups(const Side& source, const Side& target, TransportPlan& plan) {
+  const std::vector<std::int64_t> leave = group_masses(source);
+  const std::vector<std::int64_t> arrive = group_masses(target);
+  const std::vector<std::int64_t> cost = scaled_costs(source, target);
+  const TransportProblem problem{leave, arrive, cost};
+  auto solution = solve_simplex(problem, usual_pivot_limit(problem));
+  if (solution && certify(problem, *solution, plan)) return std::move(solution->entries);
+  // The proof does not rest on our own solver: where it finds none, LEMON's may.
+  solution = LemonSimplex(problem).solve();
+  if (solution && certify(problem, *solution, plan)) return std::move(solution->entries);
+  return {};
 }
 
 /// Hands what a group sends (or gets) to its members, first to first. Entries must come group by group.
@@ -168,8 +153,8 @@ Result<TransportPlan> solve_transport(std::span<const glm::dvec3> source_centres
   TransportPlan plan;
   if (source->total == 0) return plan;
 
-  auto entries = solve_groups(*source, *target, scaled_costs(*source, *target), plan);
-  if (entries.empty() || plan.primal != plan.dual) return fail({}, {}, "the transport solver found no optimum");
+  auto entries = solve_groups(*source, *target, plan);
+  if (entries.empty()) return fail({}, {}, "the transport solver found no optimum");
 
   entries = split(
       entries, *source, source_mass, [](const PlanEntry& e) { return e.source; },

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kiosk/display/interface_words.hpp"
+#include "kiosk/display/quality_table.hpp"
 #include "kiosk/display/stage.hpp"
 #include "render_gles/accumulator.hpp"
 #include "render_gles/governor.hpp"
@@ -297,6 +298,11 @@ Result<Options> parse_options(int argc, char** argv) {
     auto profile = read_icc(options.config.icc);
     if (!profile) return tl::unexpected(profile.error());
     options.config.output.profile = std::move(*profile);
+  }
+  if (!options.config.picture.quality_table.empty()) {
+    const auto table = read_quality_table(options.config.picture.quality_table);
+    if (!table) return tl::unexpected(table.error());
+    options.config.picture.costs = table->costs();
   }
   return options;
 }

@@ -25,7 +25,10 @@ double Picture::Times::median() const {
 }
 
 Picture::Picture(Stage& stage, const PictureSettings& settings)
-    : stage_(stage), settings_(settings), governor_(settings.frame_ms), fixed_(gles::find_rung(settings.quality)) {}
+    : stage_(stage),
+      settings_(settings),
+      governor_(settings.frame_ms, 0, settings.costs),
+      fixed_(gles::find_rung(settings.quality)) {}
 
 Result<void> Picture::prepare(const State& state) {
   if (auto updated = stage_.renderer().update(state.weights()); !updated) return updated;

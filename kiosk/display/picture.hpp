@@ -23,6 +23,8 @@ struct PictureSettings {
   int frame_ms = 62;                      ///< what auto holds
   int still_frames = gles::still_frames;  ///< 0: a picture that does not change is left as it moved
   KeepFree keep_free = KeepFree::nothing;
+  std::string quality_table = {};  ///< file that `costs` are from (quality_table.hpp); empty: built in
+  gles::RungCosts costs = gles::RungCosts::built_in();  ///< what auto goes by
 };
 
 class Picture {

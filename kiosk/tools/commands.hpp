@@ -25,6 +25,7 @@ void add_look_command(CLI::App& app, int& exit_code);             ///< look: the
 void add_compare_command(CLI::App& app, int& exit_code);          ///< compare: CIEDE2000 of two pictures
 void add_measure_compare_command(CLI::App& app, int& exit_code);  ///< measure-compare: CIEDE2000 of two captures
 void add_flake_life_command(CLI::App& app, int& exit_code);       ///< flake-life: how fast flakes twinkle
+void add_report_command(CLI::App& app, int& exit_code);           ///< report: error against run time, stiff cases
 
 /// The subcommand group `name` ("pack", "scene") of `app`, made on first use.
 [[nodiscard]] CLI::App& command_group(CLI::App& app, const char* name, const char* description);

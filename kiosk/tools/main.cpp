@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   add_compare_command(app, exit_code);
   add_measure_compare_command(app, exit_code);
   add_flake_life_command(app, exit_code);
+  add_report_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -80,38 +80,6 @@ Result<void> write_pictures(const core::ReferenceImage& image, const std::vector
   return gles::write_png(shown, settings.error_image);
 }
 
-Result<core::ReferenceImage> render(const ReferenceJob& job, const ReferenceSettings& settings) {
-  if (job.lighting.stripes)
-    return fail("", "--camera", "the reference has no stripe reflections", "choose another camera", ErrorKind::usage);
-  const gles::FlakeMode flakes = job.lighting.quality.flakes;
-  if (flakes != gles::FlakeMode::mean && flakes != gles::FlakeMode::bilinear)
-    return fail("", "--flakes", "the reference draws the whole paint", "use mean or bilinear", ErrorKind::usage);
-  core::PaintTextures textures = core::make_static_textures(*job.paint);
-  core::RealisedPaint realised;
-  core::realise(*job.paint, *job.weights, realised);
-  core::update_textures(*job.paint, realised, textures);
-
-  core::ReferenceScene scene = reference_scene(*job.scene);
-  scene.paint = {job.paint, &realised.analytic, &textures, flakes == gles::FlakeMode::bilinear};
-  core::ReferenceOptions options;
-  options.width = job.width;
-  options.height = job.height;
-  options.samples = settings.samples;
-  options.seconds = settings.seconds;
-  options.seed = settings.seed;
-  options.threads = settings.threads;
-  if (settings.visibility == "traced") {
-    options.visibility = core::ReferenceVisibility::traced;
-    options.bounces = 3;  // what a fourth bounce adds is below 1 % between surfaces of 10 to 40 %
-  }
-  const core::ReferenceView view{glm::dvec3(job.view.eye_mm), glm::dvec3(job.view.target_mm),
-                                 static_cast<double>(job.view.vertical_fov_deg)};
-  Progress progress("reference", job.json);
-  return core::render_reference(
-      scene, view, reference_lighting(job.lighting), options,
-      [&](double fraction, int samples) { progress.update(fraction, std::to_string(samples) + " samples a pixel"); });
-}
-
 }  // namespace
 
 void add_reference_options(CLI::App& command, ReferenceSettings& settings) {
@@ -146,8 +114,41 @@ void add_reference_options(CLI::App& command, ReferenceSettings& settings) {
       ->group(group);
 }
 
+Result<core::ReferenceImage> reference_image(const ReferenceJob& job, const ReferenceSettings& settings,
+                                             const core::ReferenceProgress& progress) {
+  if (job.lighting.stripes)
+    return fail("", "--camera", "the reference has no stripe reflections", "choose another camera", ErrorKind::usage);
+  const gles::FlakeMode flakes = job.lighting.quality.flakes;
+  if (flakes != gles::FlakeMode::mean && flakes != gles::FlakeMode::bilinear)
+    return fail("", "--flakes", "the reference draws the whole paint", "use mean or bilinear", ErrorKind::usage);
+  core::PaintTextures textures = core::make_static_textures(*job.paint);
+  core::RealisedPaint realised;
+  core::realise(*job.paint, *job.weights, realised);
+  core::update_textures(*job.paint, realised, textures);
+
+  core::ReferenceScene scene = reference_scene(*job.scene);
+  scene.paint = {job.paint, &realised.analytic, &textures, flakes == gles::FlakeMode::bilinear};
+  core::ReferenceOptions options;
+  options.width = job.width;
+  options.height = job.height;
+  options.samples = settings.samples;
+  options.seconds = settings.seconds;
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  if (settings.visibility == "traced") {
+    options.visibility = core::ReferenceVisibility::traced;
+    options.bounces = 3;  // what a fourth bounce adds is below 1 % between surfaces of 10 to 40 %
+  }
+  const core::ReferenceView view{glm::dvec3(job.view.eye_mm), glm::dvec3(job.view.target_mm),
+                                 static_cast<double>(job.view.vertical_fov_deg)};
+  return core::render_reference(scene, view, reference_lighting(job.lighting), options, progress);
+}
+
 int run_reference(const ReferenceJob& job, const ReferenceSettings& settings) {
-  const auto image = render(job, settings);
+  Progress progress("reference", job.json);
+  const auto image = reference_image(job, settings, [&](double fraction, int samples) {
+    progress.update(fraction, std::to_string(samples) + " samples a pixel");
+  });
   if (!image) return report(image.error());
   const auto exposure = static_cast<double>(job.lighting.exposure);
   const std::vector<float> steps = core::reference_error_steps(*image, exposure);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/analysis/reference.hpp"
 #include "core/error.hpp"
 #include "core/interpolatable_paint.hpp"
 #include "packs/scene.hpp"
@@ -42,6 +43,10 @@ struct ReferenceJob {
   std::string out;    ///< PNG to write
   bool json = false;
 };
+
+/// The picture itself; `out` and `json` are not read. Errors: what the reference cannot draw, no ray tracing device.
+[[nodiscard]] Result<core::ReferenceImage> reference_image(const ReferenceJob& job, const ReferenceSettings& settings,
+                                                           const core::ReferenceProgress& progress = {});
 
 /// Renders, writes the pictures and prints what was done. Returns the exit code.
 [[nodiscard]] int run_reference(const ReferenceJob& job, const ReferenceSettings& settings);

@@ -57,7 +57,7 @@ core::Brdf capture_brdf(const Capture& capture) {
     const glm::dvec3 n(0.0, 0.0, 1.0);
     const double eta = paint.refraction_ior;
     const auto g = model.paint_geometry(n, model.refract_into(in, n, eta), model.refract_into(out, n, eta));
-    glm::dvec3 factor = model.lobes_factor(g) * table_colour(paint, g.theta_h, g.theta_i);
+    glm::dvec3 factor = model.lobes_factor(g, 1.0) * table_colour(paint, g.theta_h, g.theta_i);
     if (bound->flakes) factor += bound->flakes(g.theta_h, g.theta_i);
     const double through = (1.0 - model.fresnel_dielectric(in.z, paint.coat_ior)) *
                            (1.0 - model.fresnel_dielectric(out.z, paint.coat_ior));

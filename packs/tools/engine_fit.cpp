@@ -133,7 +133,7 @@ class ColourFilter {
     const auto g = model.paint_geometry(n, model.refract_into(i, n, eta), model.refract_into(o, n, eta));
     const double through =
         (1.0 - model.fresnel_dielectric(i.z, paint_.coat_ior)) * (1.0 - model.fresnel_dielectric(o.z, paint_.coat_ior));
-    return {model.lobes_factor(g) * through, table_colour(paint_, g.theta_h, g.theta_i)};
+    return {model.lobes_factor(g, 1.0) * through, table_colour(paint_, g.theta_h, g.theta_i)};
   }
   static void add(Filtered& out, const Term& t, double weight) {
     out.with_table += t.factor * t.chi * weight;

@@ -39,7 +39,7 @@ inline void bind_lobes(const core::AnalyticPaint& paint, core::PaintModel<double
   core::PaintModel<double> model;
   bind_lobes(paint, model);
   const NodeGeometry g = node_geometry(theta_h, theta_i);
-  return model.lobes_factor(model.paint_geometry({0.0, 0.0, 1.0}, g.light, g.eye));
+  return model.lobes_factor(model.paint_geometry({0.0, 0.0, 1.0}, g.light, g.eye), 1.0);
 }
 
 }  // namespace lackwerk::packs

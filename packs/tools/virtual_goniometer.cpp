@@ -60,7 +60,7 @@ LobeAt broad_lobe(const core::AnalyticPaint& paint, const NodeGeometry& at) {
   core::PaintModel<double> model;
   const auto g = model.paint_geometry({0.0, 0.0, 1.0}, at.light, at.eye);
   return {model.fresnel_schlick(g.ho, paint.lobes[0].f0),
-          model.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, 1.0 / paint.lobes[0].m)};
+          model.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, 1.0 / paint.lobes[0].m, 1.0)};
 }
 
 /// What one flake mirrors at a node: R = 4 share s F chi / coverage.

@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <random>
 
 #include "core/analysis/flake_clusters.hpp"
 #include "core/analysis/interpolation.hpp"
 #include "core/analysis/transport.hpp"
+#include "core/analysis/transport_lemon.hpp"
+#include "core/analysis/transport_simplex.hpp"
 #include "core/directional_albedo.hpp"
 #include "core/paint_model.hpp"
 #include "core/paint_textures.hpp"
@@ -29,16 +32,43 @@ InterpolatableData real_data(std::size_t paints) {
   return testing::build_or_fail(testing::random_paints(random, paints, real_frame(), 50, 230400), real_frame(), 2);
 }
 
+/// Two slices of 50 equal masses.
+struct FiftyByFifty {
+  std::vector<glm::dvec3> a = std::vector<glm::dvec3>(50), b = a;
+  std::vector<std::int64_t> mass = std::vector<std::int64_t>(50, 4608);
+  std::vector<std::int64_t> cost;  ///< in units of 2^-31 Lab, below 2^40
+  FiftyByFifty() {
+    std::mt19937 random(2);
+    for (auto* side : {&a, &b})
+      for (auto& centre : *side)
+        centre = {testing::uniform(random, 0, 250), testing::uniform(random, -40, 40),
+                  testing::uniform(random, -40, 40)};
+    cost.reserve(a.size() * b.size());
+    for (const auto& from : a)
+      for (const auto& to : b) cost.push_back(std::llround(std::ldexp(glm::distance(from, to), 31)));
+  }
+  [[nodiscard]] TransportProblem problem() const { return {mass, mass, cost}; }
+};
+
 void transport_50_by_50(benchmark::State& state) {
-  std::mt19937 random(2);
-  std::vector<glm::dvec3> a(50), b(50);
-  std::vector<std::int64_t> mass(50, 4608);
-  for (auto* side : {&a, &b})
-    for (auto& centre : *side)
-      centre = {testing::uniform(random, 0, 250), testing::uniform(random, -40, 40), testing::uniform(random, -40, 40)};
-  for (auto _ : state) benchmark::DoNotOptimize(solve_transport(a, mass, b, mass));
+  const FiftyByFifty clouds;
+  for (auto _ : state) benchmark::DoNotOptimize(solve_transport(clouds.a, clouds.mass, clouds.b, clouds.mass));
 }
 BENCHMARK(transport_50_by_50)->Unit(benchmark::kMicrosecond);
+
+void simplex_50_by_50(benchmark::State& state) {
+  const FiftyByFifty clouds;
+  const TransportProblem problem = clouds.problem();
+  for (auto _ : state) benchmark::DoNotOptimize(solve_simplex(problem, usual_pivot_limit(problem)));
+}
+BENCHMARK(simplex_50_by_50)->Unit(benchmark::kMicrosecond);
+
+void lemon_alone_50_by_50(benchmark::State& state) {
+  const FiftyByFifty clouds;
+  LemonSimplex solver(clouds.problem());
+  for (auto _ : state) benchmark::DoNotOptimize(solver.run());
+}
+BENCHMARK(lemon_alone_50_by_50)->Unit(benchmark::kMicrosecond);
 
 void clusters_of_a_slice(benchmark::State& state) {
   std::mt19937 random(3);

@@ -97,6 +97,7 @@ rotation = 270
 seat = "direct"
 [picture]
 quality = "lean"
+quality_table = "/etc/lackwerk/quality.json"
 frame_ms = 33
 still_frames = 0
 [interface]
@@ -152,6 +153,7 @@ ignore = true
   EXPECT_EQ(c.output.rotation, Rotation::three_quarters);
   EXPECT_EQ(c.seat, "direct");
   EXPECT_EQ(c.picture.quality, "lean");
+  EXPECT_EQ(c.picture.quality_table, "/etc/lackwerk/quality.json");
   EXPECT_EQ(c.picture.frame_ms, 33);
   EXPECT_EQ(c.picture.still_frames, 0);
   EXPECT_EQ(c.output.profile.white, (Chromaticity{0.3457, 0.3585}));

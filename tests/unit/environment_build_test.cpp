@@ -80,7 +80,7 @@ glm::dvec3 brute_force(const Radiance& radiance, const glm::dvec3& r, double m) 
     const double azimuth = (sector + 0.5) / steps * 2.0 * pi;
     const glm::dvec3 l = r * std::cos(theta) + (t * std::cos(azimuth) + b * std::sin(azimuth)) * std::sin(theta);
     const auto g = model.paint_geometry(r, l, r);  // the shader's own lobe, times n.l
-    const double weight = model.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, 1.0 / m) * g.iz * std::sin(theta);
+    const double weight = model.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, 1.0 / m, 1.0) * g.iz * std::sin(theta);
     sum += radiance(l) * weight;
     weights += weight;
   }
@@ -242,7 +242,7 @@ TEST(EnvironmentBuild, LobeIsTheShadersLobe) {
       const double theta = std::min(2.0 * std::atan(share * m), 1.5);
       const glm::dvec3 n(0.0, 0.0, 1.0);
       const auto g = model.paint_geometry(n, glm::dvec3(std::sin(theta), 0.0, std::cos(theta)), n);
-      const double text = model.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, 1.0 / m) * g.iz;
+      const double text = model.lobe_shape(g.tan_h, g.nh, g.ho, g.iz, g.oz, 1.0 / m, 1.0) * g.iz;
       EXPECT_NEAR(beckmann_weight(theta, m) / text, 1.0, 1e-9) << m << ' ' << theta;
     }
   }

@@ -256,7 +256,7 @@ TEST(GgxFit, FlakesCarryTheirShare) {
     // At normal view: both directions theta_h off the half vector, one of them the normal.
     EXPECT_NEAR(theta_h, theta_i, 1e-6);
     const dvec3 n(0.0, 0.0, 1.0), i(std::sin(2.0 * theta_h), 0.0, std::cos(2.0 * theta_h));
-    return dvec3(model.lobes_factor(model.paint_geometry(n, i, n)));
+    return dvec3(model.lobes_factor(model.paint_geometry(n, i, n), 1.0));
   });
   EXPECT_NEAR(split.alpha, whole.alpha, 1e-4);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(split.scale()[c], whole.scale()[c], 1e-4 * whole.scale()[c]);

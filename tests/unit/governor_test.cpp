@@ -49,6 +49,16 @@ TEST(Governor, GoesUpWhenThereIsLastingRoomAndNotToAndFro) {
   EXPECT_LE(changes, 14) << "every failed attempt doubles the patience";
 }
 
+TEST(Governor, TheBuiltInTableIsTheLadders) {
+  const RungCosts costs = RungCosts::built_in();
+  EXPECT_EQ(costs.cost.front(), 1.0);
+  for (std::size_t k = 0; k < rung_count; ++k) {
+    EXPECT_EQ(costs.cost[k], quality_ladder()[k].cost);
+    EXPECT_EQ(costs.error[k], quality_ladder()[k].error);
+    EXPECT_FALSE(costs.dominated(static_cast<int>(k)));
+  }
+}
+
 TEST(Governor, EveryRungIsCheaperAndCanBeFound) {
   double before = 2.0;
   for (const Rung& rung : quality_ladder()) {

@@ -103,7 +103,7 @@ TEST(Recipe, PolarisSilberAsPrintedStaysBelowOneAndLooksLikeSilver) {
   for (int k = 0; k < steps; ++k) {
     const double theta = (k + 0.5) * width;
     const auto g = model.paint_geometry(normal, {std::sin(theta), 0.0, std::cos(theta)}, normal);
-    albedo += model.lobes_factor(g) * (2.0 * std::cos(theta) * std::sin(theta) * width);
+    albedo += model.lobes_factor(g, 1.0) * (2.0 * std::cos(theta) * std::sin(theta) * width);
   }
   EXPECT_NEAR(albedo.x, 0.74, 0.01);
   EXPECT_NEAR(albedo.y, 0.91, 0.01);

@@ -237,7 +237,8 @@ class Way {
     number("u_bins_per_rad", static_cast<float>(1.0 / source.layout.bin_width_rad()));
     const auto cells = source.flake_cells_per_bin();
     gl_->Uniform2f(at("u_flake_cells"), static_cast<float>(cells[0]), static_cast<float>(cells[1]));
-    gl_->Uniform2f(at("u_corner_size"), static_cast<float>(3 * textures.width), static_cast<float>(textures.row_count));
+    gl_->Uniform2f(at("u_corner_size"), static_cast<float>(3 * textures.width),
+                   static_cast<float>(textures.asked_rows));
     const glm::vec3 lo = source.range.lo, span = source.range.hi - source.range.lo;
     gl_->Uniform3f(at("u_lab_lo"), lo.x, lo.y, lo.z);
     gl_->Uniform3f(at("u_lab_span"), span.x, span.y, span.z);
@@ -266,6 +267,7 @@ Result<void> compare_with_btf(Stage& stage, const std::string& capture, int roun
   std::vector<double> first(stage.paint().paints.size(), 0.0);
   first[0] = 1.0;
   if (auto ok = stage.renderer().update(core::Weights::uniform(first)); !ok) return ok;
+  stage.renderer().bring_flakes(0);
 
   const gles::GlApi& gl = stage.context().gl();
   const gles::MeshBuffers mesh(gl, stage.scene());
