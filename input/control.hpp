@@ -20,6 +20,7 @@ enum class ControlKind {
   zoom,             ///< values: factor on the distance to the target, > 0
   light,            ///< values: number of the mood, 0 to 2
   dimmer,           ///< values: [0, 1], day to showroom night
+  time,             ///< values: [0, 1], from the first scan to the last
   turn,             ///< values: detents, positive clockwise; fractions after acceleration. name: the knob
   press,            ///< values: number of the button, the main one is 0. name: the knob
   release,          ///< as press

@@ -23,6 +23,7 @@ enum class Command {
   camera,
   light,
   dimmer,
+  time,
   turn,
   press,
   release,
@@ -46,7 +47,7 @@ struct CommandForm {
 };
 
 constexpr int most_weights = 16;
-constexpr std::array<CommandForm, 20> forms = {{
+constexpr std::array<CommandForm, 21> forms = {{
     {"weights", Command::weights, ControlKind::weights, 0, 1, most_weights, true, "weights needs one number per paint"},
     {"base", Command::base, ControlKind::base, 0, 1, most_weights, true, "base needs one number per paint"},
     {"lightness", Command::lightness, ControlKind::flake_lightness, 0, 1, most_weights, true,
@@ -59,6 +60,7 @@ constexpr std::array<CommandForm, 20> forms = {{
     {"camera", Command::camera, ControlKind::camera, 0, 0, 0, false, "camera needs a name"},
     {"light", Command::light, ControlKind::light, 0, 1, 1, false, "light needs a whole number from 0 to 2"},
     {"dimmer", Command::dimmer, ControlKind::dimmer, 0, 1, 1, true, "dimmer needs one number from 0 to 1"},
+    {"time", Command::time, ControlKind::time, 0, 1, 1, true, "time needs one number from 0 to 1"},
     {"turn", Command::turn, ControlKind::turn, 0, 1, 1, true, "turn needs a number of detents"},
     {"press", Command::press, ControlKind::press, 0, 0, 0, false, "press needs nothing"},
     {"release", Command::release, ControlKind::release, 0, 0, 0, false, "release needs nothing"},
@@ -148,6 +150,7 @@ bool numbers_fit(const CommandForm& form, const Parsed& line) {
       return n[0] > 0.0;
     case Command::white:
     case Command::dimmer:
+    case Command::time:
       return is_share(n[0]);
     case Command::light:
       return n[0] == 0.0 || n[0] == 1.0 || n[0] == 2.0;

@@ -89,7 +89,7 @@ class ScriptPlayer {
   std::vector<ScriptStep> steps_;
   std::size_t next_ = 0;
   std::vector<Running> running_;
-  std::vector<double> base_, lightness_, colour_, white_{0.0}, dimmer_{0.0};
+  std::vector<double> base_, lightness_, colour_, white_{0.0}, dimmer_{0.0}, time_{1.0};
 };
 
 }  // namespace lackwerk::input

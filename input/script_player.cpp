@@ -28,6 +28,8 @@ std::vector<double>* ScriptPlayer::last_of(ControlKind kind) {
       return &white_;
     case ControlKind::dimmer:
       return &dimmer_;
+    case ControlKind::time:
+      return &time_;
     default:
       return nullptr;
   }

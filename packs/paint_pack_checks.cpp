@@ -44,16 +44,6 @@ std::string at(std::string_view name, std::size_t index) {
   return std::string(name) + "[" + std::to_string(index) + "]";
 }
 
-/// Well-formed UTF-8 without control characters: it goes to a text renderer, into JSON and onto terminals.
-bool printable(std::string_view text) {
-  while (!text.empty()) {
-    const auto letter = first_letter(text);
-    if (!letter || is_control(letter->point)) return false;
-    text.remove_prefix(letter->bytes);
-  }
-  return true;
-}
-
 Result<void> check_info(const PackInfo& info, std::size_t paints, const Judge& judge) {
   if (!is_pack_id(info.id))
     return fail(judge.file, "id", "must be 1 to 64 letters, digits, dots, dashes or underscores, not a mark first",
@@ -62,7 +52,7 @@ Result<void> check_info(const PackInfo& info, std::size_t paints, const Judge& j
     return judge.refuse("minimum_reader", std::to_string(info.minimum_reader) + " is not known here");
   if (info.schema_version < info.minimum_reader)
     return judge.refuse("schema_version", std::to_string(info.schema_version) + " is below minimum_reader");
-  if (!printable(info.tool_version) || info.tool_version.size() > 256)
+  if (!is_printable(info.tool_version) || info.tool_version.size() > 256)
     return judge.refuse("tool_version", "must be at most 256 bytes of UTF-8 without control characters");
   if (auto ok = judge.within(info.transport_cost, 0.0, max_lab, "transport_cost"); !ok) return ok;
   if (auto ok = judge.within(info.beyond_limit, 0.0, core::most_beyond, "beyond_limit"); !ok) return ok;
@@ -88,9 +78,9 @@ Result<void> check_error(const PaintError& error, std::size_t slices, const std:
 }
 
 Result<void> check_identity(const core::PaintIdentity& identity, const std::string& name, const Judge& judge) {
-  if (identity.name.empty() || identity.name.size() > 200 || !printable(identity.name))
+  if (identity.name.empty() || identity.name.size() > 200 || !is_printable(identity.name))
     return judge.refuse(name + ".name", "must be 1 to 200 bytes of UTF-8 without control characters");
-  if (identity.source.size() > 1000 || !printable(identity.source))
+  if (identity.source.size() > 1000 || !is_printable(identity.source))
     return judge.refuse(name + ".source", "must be at most 1000 bytes of UTF-8 without control characters");
   for (const core::Provenance origin : {identity.lobes, identity.flakes, identity.coat})
     if (origin > core::Provenance::simulated)

@@ -23,8 +23,17 @@ static_assert(std::endian::native == std::endian::little, "packs are little-endi
 constexpr std::size_t at_version = 8, at_kind = 12, at_payload_bytes = 16, at_reserved = 24, at_digest = 32;
 constexpr std::string_view magic{"LACKWERK", 8};
 
-std::string_view kind_code(SealedKind kind) { return kind == SealedKind::paint ? "LWPP" : "LWSC"; }
-std::string_view kind_name(SealedKind kind) { return kind == SealedKind::paint ? "paint pack" : "scene pack"; }
+struct KindWords {
+  SealedKind kind;
+  std::string_view code, name;
+};
+constexpr std::array<KindWords, 3> kinds = {{{SealedKind::paint, "LWPP", "paint pack"},
+                                             {SealedKind::scene, "LWSC", "scene pack"},
+                                             {SealedKind::scan, "LWSN", "scan pack"}}};
+static_assert(kinds[static_cast<std::size_t>(SealedKind::scan)].kind == SealedKind::scan);
+
+std::string_view kind_code(SealedKind kind) { return kinds[static_cast<std::size_t>(kind)].code; }
+std::string_view kind_name(SealedKind kind) { return kinds[static_cast<std::size_t>(kind)].name; }
 
 std::string reason() { return std::strerror(errno); }
 
@@ -96,7 +105,8 @@ Result<void> check_header(std::span<const std::uint8_t> bytes, SealedKind kind, 
     return fail(file, "format_version", "container version " + std::to_string(version) + " is not known here",
                 "update this program or make the pack again");
   if (std::memcmp(p + at_kind, kind_code(kind).data(), 4) != 0)
-    return fail(file, "kind", "not a " + std::string(kind_name(kind)), "scene packs end in .lws, paint packs in .lwp");
+    return fail(file, "kind", "not a " + std::string(kind_name(kind)),
+                "scene packs end in .lws, paint and scan packs in .lwp");
   const auto payload_bytes = read_le<std::uint64_t>(p + at_payload_bytes);
   const std::uint64_t present = bytes.size() - sealed_header_bytes;
   if (payload_bytes != present)
@@ -119,6 +129,20 @@ Digest digest_of(std::span<const std::uint8_t> bytes) {
   [[maybe_unused]] const int ready = sodium_init();
   crypto_generichash(out.data(), out.size(), bytes.data(), bytes.size(), nullptr, 0);
   return out;
+}
+
+std::optional<SealedKind> sealed_kind_of(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < sealed_header_bytes || std::memcmp(bytes.data(), magic.data(), magic.size()) != 0) return {};
+  for (const KindWords& known : kinds)
+    if (std::memcmp(bytes.data() + at_kind, known.code.data(), known.code.size()) == 0) return known.kind;
+  return {};
+}
+
+std::optional<SealedKind> sealed_kind_of(const std::filesystem::path& path) {
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  std::array<std::uint8_t, sealed_header_bytes> header{};
+  if (fd.get() < 0 || !read_all(fd.get(), header)) return {};
+  return sealed_kind_of(header);
 }
 
 SealedFile::SealedFile(SealedFile&& other) noexcept

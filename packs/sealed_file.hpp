@@ -1,6 +1,6 @@
 // The container of every pack file: a 64-byte header and a payload that is checked before anyone looks inside.
 //
-// Why it exists: paint and scene packs share one way of being written (whole or not at all) and one way of being
+// Why it exists: paint, scene and scan packs share one way of being written (whole or not at all) and one way of being
 // refused (any flipped bit, any missing or added byte). A SealedFile owns its mapping or its copy of the bytes and
 // frees it; move-only. Reading is const: any number of threads. docs/pack-format.md lists the header byte by byte.
 #pragma once
@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@
 namespace lackwerk::packs {
 
 /// Which root table the payload holds; stored as four characters, the same as the FlatBuffers file identifier.
-enum class SealedKind { paint, scene };
+enum class SealedKind { paint, scene, scan };
 
 /// How an opened file stays in memory.
 enum class Backing {
@@ -30,15 +31,25 @@ inline constexpr std::size_t sealed_header_bytes = 64;
 inline constexpr std::uint32_t sealed_format_version = 1;
 inline constexpr std::uint64_t max_paint_pack_bytes = 64ull << 20;
 inline constexpr std::uint64_t max_scene_pack_bytes = 256ull << 20;
+inline constexpr std::uint64_t max_scan_pack_bytes = max_paint_pack_bytes;
+/// What store and kiosk take: a pack of paints or of scans.
+inline constexpr std::uint64_t max_exhibit_bytes = max_paint_pack_bytes;
 
 /// Largest whole file of a kind, header included.
 [[nodiscard]] constexpr std::uint64_t max_file_bytes(SealedKind kind) {
-  return kind == SealedKind::paint ? max_paint_pack_bytes : max_scene_pack_bytes;
+  return kind == SealedKind::paint   ? max_paint_pack_bytes
+         : kind == SealedKind::scene ? max_scene_pack_bytes
+                                     : max_scan_pack_bytes;
 }
 
 /// BLAKE2b-256 as stored in the header.
 using Digest = std::array<std::uint8_t, 32>;
 [[nodiscard]] Digest digest_of(std::span<const std::uint8_t> bytes);
+
+/// What the first bytes of a file say it is; nothing where it is no pack, or cannot be read. No promise that it opens.
+[[nodiscard]] std::optional<SealedKind> sealed_kind_of(const std::filesystem::path& path);
+/// The same of bytes that were read.
+[[nodiscard]] std::optional<SealedKind> sealed_kind_of(std::span<const std::uint8_t> bytes);
 
 class SealedFile {
  public:

@@ -6,17 +6,17 @@ namespace lackwerk::packs {
 
 std::filesystem::path signature_path(const std::filesystem::path& pack) { return pack.string() + ".minisig"; }
 
-Result<PackSelf> check_paint_pack(std::vector<std::uint8_t> bytes, const std::string& file) {
-  const auto pack = PaintPack::from_bytes(std::move(bytes), file);
+Result<PackSelf> check_pack(std::vector<std::uint8_t> bytes, const std::string& file) {
+  const auto pack = ExhibitPack::from_bytes(std::move(bytes), file);
   if (!pack) return tl::unexpected(pack.error());
-  return PackSelf{pack->info().id, pack->info().serial};
+  return PackSelf{pack->id(), pack->serial()};
 }
 
 Result<OpenedPack> open_signed_pack(const std::filesystem::path& path, const Keyring& keyring, bool allow_unsigned) {
   const std::string file = path.string();
   auto source = open_source(path);
   if (!source) return tl::unexpected(source.error());
-  auto bytes = read_source(**source, max_paint_pack_bytes, file);
+  auto bytes = read_source(**source, max_exhibit_bytes, file);
   if (!bytes) return tl::unexpected(bytes.error());
   std::optional<SignedAs> as;
   std::error_code code;
@@ -32,10 +32,10 @@ Result<OpenedPack> open_signed_pack(const std::filesystem::path& path, const Key
   } else if (!allow_unsigned) {
     return fail(file, "", "not signed", "put " + beside.filename().string() + " beside it, or allow unsigned packs");
   }
-  auto pack = PaintPack::from_bytes(std::move(*bytes), file);
+  auto pack = ExhibitPack::from_bytes(std::move(*bytes), file);
   if (!pack) return tl::unexpected(pack.error());
   if (as)
-    if (auto same = check_signed_as(*as, pack->info().id, pack->info().serial, beside.string()); !same)
+    if (auto same = check_signed_as(*as, pack->id(), pack->serial(), beside.string()); !same)
       return tl::unexpected(same.error());
   return OpenedPack{std::move(*pack), as};
 }

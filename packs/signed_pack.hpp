@@ -9,15 +9,15 @@
 #include <optional>
 #include <vector>
 
+#include "packs/exhibit_pack.hpp"
 #include "packs/keyring.hpp"
-#include "packs/paint_pack.hpp"
 #include "packs/storage.hpp"
 #include "packs/store.hpp"
 
 namespace lackwerk::packs {
 
 struct OpenedPack {
-  PaintPack pack;
+  ExhibitPack pack;
   std::optional<SignedAs> signed_as;  ///< nothing: there is no signature, and that was allowed
 };
 
@@ -25,11 +25,12 @@ struct OpenedPack {
 [[nodiscard]] std::filesystem::path signature_path(const std::filesystem::path& pack);
 
 /// Opens a pack. With a signature beside it, that must verify with the keyring, whatever else is allowed. Errors: as
-/// Keyring::check and PaintPack::open, unsigned where that is not allowed, or signed as another pack than it is.
+/// Keyring::check and ExhibitPack::from_bytes, unsigned where that is not allowed, or signed as another pack than it
+/// is.
 [[nodiscard]] Result<OpenedPack> open_signed_pack(const std::filesystem::path& path, const Keyring& keyring,
                                                   bool allow_unsigned);
 
 /// What the store asks of a pack's bytes.
-[[nodiscard]] Result<PackSelf> check_paint_pack(std::vector<std::uint8_t> bytes, const std::string& file);
+[[nodiscard]] Result<PackSelf> check_pack(std::vector<std::uint8_t> bytes, const std::string& file);
 
 }  // namespace lackwerk::packs

@@ -27,7 +27,7 @@ inline constexpr const char* stored_signature_file = "pack.lwp.minisig";
 
 struct StoreSettings {
   std::uint64_t quota_bytes = 1ull << 30;       ///< of everything in it
-  std::uint64_t most_pack_bytes = 64ull << 20;  ///< of one file: max_paint_pack_bytes
+  std::uint64_t most_pack_bytes = 64ull << 20;  ///< of one file: max_exhibit_bytes
   bool allow_unsigned = false;                  ///< a pack without a signature is taken; one with a bad one never
 };
 

@@ -20,4 +20,13 @@ std::optional<Utf8Letter> first_letter(std::string_view text) {
   return Utf8Letter{point, bytes};
 }
 
+bool is_printable(std::string_view text) {
+  while (!text.empty()) {
+    const auto letter = first_letter(text);
+    if (!letter || is_control(letter->point)) return false;
+    text.remove_prefix(letter->bytes);
+  }
+  return true;
+}
+
 }  // namespace lackwerk::packs

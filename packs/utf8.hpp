@@ -21,4 +21,7 @@ struct Utf8Letter {
 /// C0, delete and C1.
 [[nodiscard]] constexpr bool is_control(char32_t point) { return point < 0x20 || (point >= 0x7f && point < 0xa0); }
 
+/// Well-formed UTF-8 without control characters.
+[[nodiscard]] bool is_printable(std::string_view text);
+
 }  // namespace lackwerk::packs

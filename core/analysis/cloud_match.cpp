@@ -86,10 +86,17 @@ class Matcher {
   }
 
   std::vector<SegmentMatch> by_label() {
+    // An empty root stands for nothing: its label, which parts may bear too, makes no pair.
+    SegmentMatch roots;
+    if (from_.at(0).points.empty()) roots.from_segments = {0};
+    if (to_.at(0).points.empty()) roots.to_segments = {0};
+    if (!roots.from_segments.empty() || !roots.to_segments.empty()) matches_.push_back(std::move(roots));
     std::map<std::int32_t, std::uint32_t> to_of;
-    for (std::uint32_t s = 0; s < to_.tree.segments.size(); ++s) to_of[to_.at(s).label] = s;
+    for (std::uint32_t s = 0; s < to_.tree.segments.size(); ++s)
+      if (!to_.at(s).points.empty()) to_of[to_.at(s).label] = s;
     std::vector<std::uint32_t> partner(to_.tree.segments.size(), CloudSegment::none);
     for (std::uint32_t s = 0; s < from_.tree.segments.size(); ++s) {
+      if (from_.at(s).points.empty()) continue;
       const auto found = to_of.find(from_.at(s).label);
       if (found == to_of.end()) {
         decay({s});
@@ -99,7 +106,7 @@ class Matcher {
       add_match({s}, {found->second}, distance({s}, {found->second}));
     }
     for (std::uint32_t s = 0; s < to_.tree.segments.size(); ++s) {
-      if (partner[s] != CloudSegment::none) continue;
+      if (partner[s] != CloudSegment::none || to_.at(s).points.empty()) continue;
       std::uint32_t above = to_.at(s).parent;
       while (above != CloudSegment::none && partner[above] == CloudSegment::none) above = to_.at(above).parent;
       grow({s}, above == CloudSegment::none ? Numbers{} : from_.at(partner[above]).points);
@@ -129,7 +136,7 @@ class Matcher {
     // A merge must bring the parts nearer by a tenth: less than that, the groups' own grain could.
     constexpr double gain = 0.9;
     double now = distance(from, to);
-    while (now > 0.0) {
+    while (options_.merges && now > 0.0) {
       double best = gain * now;
       Numbers* side = nullptr;
       std::uint32_t child = 0;

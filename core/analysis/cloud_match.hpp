@@ -37,6 +37,7 @@ struct MatchOptions {
   /// one on the other side of the stem lies about one length away.
   double most_distance = 0.5;
   bool fades = false;     ///< decayed parts stay where they are (and fade) instead of falling
+  bool merges = true;     ///< by distance: what is split in one scan only comes together again
   bool by_label = false;  ///< segments of equal label are pairs (GT's cases 1 and 2)
 };
 

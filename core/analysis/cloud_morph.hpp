@@ -18,8 +18,11 @@ namespace lackwerk::core {
 
 /// One point's straight way from time 0 to time 1.
 struct CloudPath {
+  static constexpr std::uint32_t none = 0xffffffffu;
   glm::dvec3 from{0.0}, to{0.0};
-  std::uint32_t match = 0;  ///< into `matches`: its kind says whether the point grows, moves or decays
+  std::uint32_t match = 0;        ///< into `matches`: its kind says whether the point grows, moves or decays
+  std::uint32_t from_point = 0;   ///< index in its scan
+  std::uint32_t to_point = none;  ///< index in its scan; none where the point decays
 };
 
 struct CloudMorph {
@@ -28,6 +31,21 @@ struct CloudMorph {
   int unsettled = 0;             ///< matches whose transport met its iteration limit
   double worst_violation = 0.0;  ///< of marginals, over all matches
 };
+
+/// The ways of one match's points.
+struct MatchPaths {
+  std::vector<CloudPath> paths;
+  SinkhornState state = SinkhornState::converged;
+  double violation = 0.0;  ///< of marginals
+};
+
+/// Paths of match number `number`: straight down (or nowhere) where it decays, else along the chosen pairs.
+[[nodiscard]] Result<MatchPaths> match_paths(std::span<const glm::dvec3> from, std::span<const glm::dvec3> to,
+                                             const SegmentMatch& match, std::uint32_t number,
+                                             const CloudTransportOptions& transport);
+
+/// Puts a match's paths behind those before it.
+void add_match_paths(MatchPaths paths, CloudMorph& morph);
 
 /// Paths between segmented scans. Errors: a scan has no points (field: from or to).
 [[nodiscard]] Result<CloudMorph> morph_scans(std::span<const glm::dvec3> from, const CloudSegments& from_tree,

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
 #include "core/analysis/cloud_graph.hpp"
+#include "core/analysis/cloud_levels.hpp"
 #include "core/analysis/cloud_neighbours.hpp"
 
 namespace lackwerk::core {
@@ -84,6 +86,70 @@ Cut cut(const HungTree& hung, double shortest_branch) {
   return out;
 }
 
+/// A default for SegmentOptions::shortest_branch.
+double shortest_of(const SegmentOptions& options, double longest_way) {
+  constexpr double least_share = 0.125;
+  return options.shortest_branch > 0.0 ? options.shortest_branch : least_share * longest_way;
+}
+
+Cut cut_spanning_tree(std::span<const glm::dvec3> places, std::span<const CloudEdge> edges,
+                      const SegmentOptions& options) {
+  const HungTree hung = hang(spanning_tree(places.size(), edges), places.size(), lowest(places, options.up));
+  return cut(hung, shortest_of(options, hung.to_tip[hung.order.front()]));
+}
+
+/// Cuts behind each level from which more than one branch goes on.
+Cut cut_levels(std::span<const glm::dvec3> places, std::span<const CloudEdge> edges, const SegmentOptions& options) {
+  // Neighbours in a cube's next but one, not beyond: 15 of a thin stem reach across a fork.
+  constexpr double edge_spacings = 2.5;
+  const double reach = edge_spacings * spacing_of(places);
+  const auto graph = without_short_cuts(places.size(), edges, reach);
+  const CloudWays ways = ways_from(lowest(places, options.up), places.size(), graph);
+  const double shortest = shortest_of(options, ways.longest);
+  // A level as high as an edge is long hangs together; a branch has four at least (and there is one where all places
+  // are the same).
+  const double height = std::max({reach, 0.25 * shortest, std::numeric_limits<double>::min()});
+  const CloudLevels tree = levels_of(ways, graph, height);
+  const std::size_t count = tree.levels.size();
+
+  const auto is_branch = [&](std::size_t k) { return tree.levels[k].end - tree.levels[k].begin > shortest; };
+  std::vector<std::uint32_t> branches(count, 0);
+  for (std::size_t k = 1; k < count; ++k)
+    if (is_branch(k)) ++branches[tree.levels[k].parent];
+  std::vector<std::uint32_t> segment(count, 0);
+  std::vector<std::uint32_t> parent{CloudSegment::none};
+  std::vector<double> begin{0.0};
+  std::vector<double> fork{HUGE_VAL};  // where a segment's branches begin
+  for (std::size_t k = 1; k < count; ++k) {
+    const std::uint32_t below = segment[tree.levels[k].parent];
+    if (branches[tree.levels[k].parent] < 2 || !is_branch(k)) {
+      segment[k] = below;
+      continue;
+    }
+    segment[k] = static_cast<std::uint32_t>(parent.size());
+    parent.push_back(below);
+    begin.push_back(tree.levels[k].begin);
+    fork.push_back(HUGE_VAL);
+    fork[below] = std::min(fork[below], tree.levels[k].begin);
+  }
+
+  // Where forks lie closer than a branch is long, their order is chance: what lies between goes to what is below.
+  std::vector<std::uint32_t> kept(parent.size(), 0);
+  Cut out;
+  out.parent.push_back(CloudSegment::none);
+  for (std::size_t s = 1; s < parent.size(); ++s) {
+    if (fork[s] - begin[s] < shortest) {
+      kept[s] = kept[parent[s]];
+      continue;
+    }
+    kept[s] = static_cast<std::uint32_t>(out.parent.size());
+    out.parent.push_back(kept[parent[s]]);
+  }
+  out.segment_of.reserve(places.size());
+  for (const std::uint32_t level : tree.level_of) out.segment_of.push_back(kept[segment[level]]);
+  return out;
+}
+
 CloudSegments gathered(std::span<const std::uint32_t> segment_of, std::span<const std::uint32_t> parent) {
   CloudSegments out;
   out.segments.resize(parent.size());
@@ -152,12 +218,8 @@ Result<CloudSegments> segments_of(std::span<const glm::dvec3> points, const Segm
     skeleton = std::move(*coarse);
   }
   const std::vector<glm::dvec3>& places = skeleton.points;
-  const auto tree = spanning_tree(places.size(), connected_graph(places, options.neighbours));
-  const HungTree hung = hang(tree, places.size(), lowest(places, options.up));
-  constexpr double least_share = 0.125;
-  const double shortest =
-      options.shortest_branch > 0.0 ? options.shortest_branch : least_share * hung.to_tip[hung.order.front()];
-  const Cut found = cut(hung, shortest);
+  const auto edges = connected_graph(places, options.neighbours);
+  const Cut found = options.by_levels ? cut_levels(places, edges, options) : cut_spanning_tree(places, edges, options);
   if (options.skeleton_spacing <= 0.0) return gathered(found.segment_of, found.parent);
 
   const CloudTree search(places);

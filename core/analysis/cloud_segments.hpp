@@ -37,13 +37,16 @@ struct SegmentOptions {
   /// Spacing at which the tree is built, so that a stem is a line and no tube of parallel lines; points take the
   /// segment of the nearest place. <= 0: as the points are.
   double skeleton_spacing = 0.0;
+  /// Cut a tree of levels, for plants with leaves; else the spanning tree, as GT does for thin structures only.
+  bool by_levels = true;
   double touch = 0.0;         ///< labelled parts nearer than this are neighbours; <= 0: four spacings of the scan
   bool virtual_root = false;  ///< labelled parts all hang from an empty root (leaves scanned without a stem)
 };
 
-/// Segments of thin structures: k nearest neighbours, minimum spanning tree from the lowest point, cut behind each
-/// point from which more than one branch longer than `shortest_branch` goes on (GT 4.3.2). Gaps are bridged at their
-/// narrowest place. Errors: as resampled().
+/// Segments as they are found: k nearest neighbours, a tree that hangs from the lowest point, cut behind each of its
+/// places from which more than one branch longer than `shortest_branch` goes on (GT 4.3.2). The tree is one of levels,
+/// so that a broad leaf is one segment, and pieces between two forks that are shorter than a branch stay with what
+/// they grow on; or it is the minimum spanning tree. Gaps are bridged at their narrowest place. Errors: as resampled().
 [[nodiscard]] Result<CloudSegments> segments_of(std::span<const glm::dvec3> points, const SegmentOptions& options);
 
 /// Segments from labels, one per point: the root has the lowest point; what touches a segment is its child, level by

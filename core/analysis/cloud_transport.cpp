@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <tuple>
+#include <utility>
 
 #include "core/analysis/cloud_neighbours.hpp"
 #include "core/analysis/cloud_wasserstein.hpp"
-#include "core/check.hpp"
+#include "core/analysis/transport_simplex.hpp"
 
 namespace lackwerk::core {
 
@@ -49,42 +53,96 @@ double squared_distance(const glm::dvec3& a, const glm::dvec3& b) {
   return d.x * d.x + d.y * d.y + d.z * d.z;
 }
 
-/// Where mass goes between the groups: how far that of each source group on average, and how far that of each target
-/// group has come. The exact plan counts distances, not squares: along a stem that grows, staying and jumping to the
-/// tip cost it the same; so the drift is that of a regularised plan between the groups.
-struct Drift {
-  std::vector<glm::dvec3> leaving, arriving;
-};
-Result<Drift> drift_between(const CloudClusters& from, const CloudClusters& to, bool squared) {
+/// The plan between the groups that costs least. plan_between's counts distances, not squares: along a stem that grows,
+/// staying and jumping to the tip cost it the same.
+TransportPlan coarse_plan(const CloudClusters& from, const CloudClusters& to, bool squared) {
+  if (!squared) return plan_between(from, to);
   std::vector<double> cost;
-  for (const glm::dvec3& a : from.centres)
-    for (const glm::dvec3& b : to.centres)
-      cost.push_back(squared ? squared_distance(a, b) : std::sqrt(squared_distance(a, b)));
-  const auto masses = [](const CloudClusters& side) {
-    std::vector<double> out;
-    for (const auto& members : side.members)
-      out.push_back(static_cast<double>(members.size()) / static_cast<double>(side.points));
-    return out;
-  };
-  const std::vector<double> leave = masses(from);
-  const std::vector<double> arrive = masses(to);
-  SinkhornOptions options;
-  options.gamma = 0.01;  // relative: a blur of a tenth of the typical distance
-  options.tolerance = 1e-3;
-  options.most_iterations = 2000;
-  options.domain = SinkhornDomain::logarithmic;
-  const auto plan = solve_sinkhorn(dense_support(leave.size(), arrive.size(), cost), leave, arrive, options);
-  if (!plan) return tl::unexpected(plan.error());
-  Drift drift{std::vector<glm::dvec3>(leave.size(), glm::dvec3(0.0)),
-              std::vector<glm::dvec3>(arrive.size(), glm::dvec3(0.0))};
-  for (std::size_t g = 0; g < leave.size(); ++g) {
-    for (std::size_t h = 0; h < arrive.size(); ++h) {
-      const double mass = plan->mass[g * arrive.size() + h];
-      drift.leaving[g] += mass / leave[g] * (to.centres[h] - from.centres[g]);
-      drift.arriving[h] += mass / arrive[h] * (to.centres[h] - from.centres[g]);
+  cost.reserve(from.centres.size() * to.centres.size());
+  double largest = 0.0;
+  for (const glm::dvec3& a : from.centres) {
+    for (const glm::dvec3& b : to.centres) {
+      cost.push_back(squared_distance(a, b));
+      largest = std::max(largest, cost.back());
     }
   }
-  return drift;
+  if (!(largest > 0.0)) return plan_between(from, to);
+  constexpr int cost_bits = 40;
+  std::vector<std::int64_t> scaled;
+  scaled.reserve(cost.size());
+  for (const double c : cost) scaled.push_back(std::llround(std::ldexp(c / largest, cost_bits)));
+  const auto masses = [](const CloudClusters& side, std::size_t others) {
+    std::vector<std::int64_t> out;
+    out.reserve(side.members.size());
+    for (const auto& members : side.members) out.push_back(static_cast<std::int64_t>(members.size() * others));
+    return out;
+  };
+  const std::vector<std::int64_t> leave = masses(from, to.points);
+  const std::vector<std::int64_t> arrive = masses(to, from.points);
+  const TransportProblem problem{leave, arrive, scaled};
+  auto solution = solve_simplex(problem, usual_pivot_limit(problem));
+  if (!solution) return plan_between(from, to);
+  TransportPlan plan;
+  plan.entries = std::move(solution->entries);
+  return plan;
+}
+
+/// Where the points of a group move: the mean way of the groups around it, and how it changes from place to place. A
+/// part that grows stretches, so one way for a whole group would leave gaps between groups and crowd their seams.
+struct LocalWay {
+  glm::dvec3 centre{0.0}, way{0.0};
+  glm::dmat3 change{0.0};
+  [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& place) const { return way + change * (place - centre); }
+};
+
+/// Least squares over each group and those nearest to it.
+std::vector<LocalWay> smooth_ways(const std::vector<glm::dvec3>& centres, const std::vector<glm::dvec3>& ways) {
+  constexpr std::size_t around = 9;
+  // What the groups do not span (across a thin stem) is not guessed at.
+  constexpr double ridge = 0.01;
+  std::vector<LocalWay> out(centres.size());
+  const CloudTree tree(centres);
+  std::vector<CloudNeighbour> near;
+  for (std::size_t g = 0; g < centres.size(); ++g) {
+    tree.nearest(centres[g], around, near);
+    LocalWay& local = out[g];
+    for (const CloudNeighbour& n : near) {
+      local.centre += (centres[n.index] - centres[g]) / static_cast<double>(near.size());
+      local.way += ways[n.index] / static_cast<double>(near.size());
+    }
+    local.centre += centres[g];
+    glm::dmat3 spread(0.0), change(0.0);
+    for (const CloudNeighbour& n : near) {
+      const glm::dvec3 off = centres[n.index] - local.centre;
+      spread += glm::outerProduct(off, off);
+      change += glm::outerProduct(ways[n.index] - local.way, off);
+    }
+    const double size = spread[0][0] + spread[1][1] + spread[2][2];
+    if (!(size > 0.0)) continue;
+    const glm::dmat3 fitted = change / size * glm::inverse(spread / size + glm::dmat3(ridge));
+    bool finite = true;
+    for (int axis = 0; axis < 3; ++axis) finite = finite && std::isfinite(glm::dot(fitted[axis], glm::dvec3(1.0)));
+    if (finite) local.change = fitted;
+  }
+  return out;
+}
+
+/// Where mass goes between the groups: of each source group, and (backwards) to each target group.
+struct Drift {
+  std::vector<LocalWay> leaving, arriving;
+};
+Drift drift_of(const CloudClusters& from, const CloudClusters& to, const TransportPlan& plan) {
+  std::vector<glm::dvec3> leaving(from.centres.size(), glm::dvec3(0.0));
+  std::vector<glm::dvec3> arriving(to.centres.size(), glm::dvec3(0.0));
+  const auto points = static_cast<double>(from.points);
+  const auto others = static_cast<double>(to.points);
+  for (const PlanEntry& e : plan.entries) {
+    const glm::dvec3 way = to.centres[e.target] - from.centres[e.source];
+    const auto mass = static_cast<double>(e.mass);
+    leaving[e.source] += mass / (others * static_cast<double>(from.members[e.source].size())) * way;
+    arriving[e.target] += mass / (points * static_cast<double>(to.members[e.target].size())) * way;
+  }
+  return {smooth_ways(from.centres, leaving), smooth_ways(to.centres, arriving)};
 }
 
 }  // namespace
@@ -93,30 +151,30 @@ TransportSupport cloud_support(std::span<const glm::dvec3> from, std::span<const
                                const CloudTransportOptions& options) {
   const CloudClusters sources = clusters_of(from, options.clusters);
   const CloudClusters targets = clusters_of(to, options.clusters);
-  const auto drift = drift_between(sources, targets, options.squared);
-  check_equal(drift.has_value(), true, "a plan between groups of equal mass exists");
+  const TransportPlan plan = coarse_plan(sources, targets, options.squared);
+  const Drift drift = drift_of(sources, targets, plan);
   Pairs pairs;
   pairs.reserve((from.size() + to.size()) * (options.neighbours + 1));
   std::vector<CloudNeighbour> near;
   {
     const CloudTree tree(to);
-    for (std::size_t g = 0; g < drift->leaving.size(); ++g) {
+    for (std::size_t g = 0; g < drift.leaving.size(); ++g) {
       for (const std::uint32_t a : sources.members[g]) {
-        tree.nearest(from[a] + drift->leaving[g], options.neighbours, near);
+        tree.nearest(from[a] + drift.leaving[g](from[a]), options.neighbours, near);
         for (const CloudNeighbour& n : near) pairs.push_back({a, n.index});
       }
     }
   }
   {
     const CloudTree tree(from);
-    for (std::size_t g = 0; g < drift->arriving.size(); ++g) {
+    for (std::size_t g = 0; g < drift.arriving.size(); ++g) {
       for (const std::uint32_t b : targets.members[g]) {
-        tree.nearest(to[b] - drift->arriving[g], options.neighbours, near);
+        tree.nearest(to[b] - drift.arriving[g](to[b]), options.neighbours, near);
         for (const CloudNeighbour& n : near) pairs.push_back({n.index, b});
       }
     }
   }
-  if (options.backbone) add_backbone(sources, targets, plan_between(sources, targets), pairs);
+  if (options.backbone) add_backbone(sources, targets, plan, pairs);
   std::sort(pairs.begin(), pairs.end(), before);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 
@@ -170,12 +228,15 @@ Result<CloudPairs> pair_points(std::span<const glm::dvec3> from, std::span<const
   sinkhorn.gamma = options.gamma;
   sinkhorn.tolerance = options.tolerance;
   sinkhorn.most_iterations = options.most_iterations;
+  sinkhorn.momentum = true;
+  sinkhorn.feasible = options.backbone;
   sinkhorn.domain = SinkhornDomain::logarithmic;
   sinkhorn.precision = SinkhornPrecision::single_float;
   auto plan = solve_sinkhorn(support, leave, arrive, sinkhorn);
   if (plan && plan->state == SinkhornState::infeasible && !options.backbone) {
     CloudTransportOptions wider = options;
     wider.backbone = true;
+    sinkhorn.feasible = true;
     support = cloud_support(from, to, wider);
     plan = solve_sinkhorn(support, leave, arrive, sinkhorn);
   }

@@ -24,11 +24,44 @@ struct Problem {
 
 enum class Stop { converged, drifted, limit, stalled };
 
+/// How much of the last step goes on, from how fast the violation falls. Near the solution an iteration shrinks each
+/// mode of the error by its own factor below 1; with momentum b the slowest, l, shrinks by z where z^2 - (l + b) z + b
+/// is 0, and best, by sqrt(b), where sqrt(b) is 1 - sqrt(1 - l).
+class Momentum {
+ public:
+  explicit Momentum(bool wanted) : wanted_(wanted) {}
+  [[nodiscard]] bool wanted() const { return wanted_; }
+  [[nodiscard]] double part() const { return part_; }
+  /// Told after each iteration.
+  void look(double violation) {
+    if (!wanted_ || ++since_ < span) return;
+    since_ = 0;
+    const double rate = std::pow(violation / then_, 1.0 / span);
+    then_ = violation;
+    if (!(rate < 1.0)) {
+      part_ = 0.0;  // too much, or too early: plain iterations never diverge
+    } else if (rate > std::sqrt(part_)) {
+      const double slowest = std::min(most_slow, rate + part_ / rate - part_);
+      const double root = 1.0 - std::sqrt(std::max(0.0, 1.0 - slowest));
+      part_ = root * root;
+    }
+  }
+
+ private:
+  static constexpr int span = 16;
+  static constexpr double most_slow = 0.9995;  ///< beyond it rounding is amplified
+  bool wanted_;
+  int since_ = 0;
+  double then_ = std::numeric_limits<double>::infinity();
+  double part_ = 0.0;
+};
+
 /// Counts iterations and notices when they lead nowhere.
 struct Watch {
   int iterations = 0;
   int most = 0;
   bool look_for_stall = false;
+  Momentum momentum{false};  ///< outlives absorptions: the rate is the problem's
   double violation_then = std::numeric_limits<double>::infinity();
 };
 constexpr int stall_span = 256;         ///< iterations between two looks
@@ -64,7 +97,7 @@ bool fit_columns(const Problem& p, Scalings<Real>& s, Real widest) {
 /// Iterates from scalings that fit the columns.
 template <class Real>
 Stop iterate(const Problem& p, Scalings<Real>& s, Real widest, double tolerance, Watch& watch) {
-  std::vector<Real> fresh(p.rows());
+  std::vector<Real> fresh(p.rows()), before;
   while (true) {
     double violation = 0.0;
     bool alive = true;
@@ -83,6 +116,12 @@ Stop iterate(const Problem& p, Scalings<Real>& s, Real widest, double tolerance,
       if (violation > stall_progress * watch.violation_then) return Stop::stalled;
       watch.violation_then = violation;
     }
+    watch.momentum.look(violation);
+    const auto part = static_cast<Real>(watch.momentum.part());
+    if (part > Real{0} && before.size() == p.rows())
+      for (std::size_t a = 0; a < p.rows(); ++a)
+        fresh[a] = std::clamp(fresh[a] * std::pow(s.u[a] / before[a], part), Real{1} / widest, widest);
+    if (watch.momentum.wanted()) before = s.u;
     s.u.swap(fresh);
     if (!fit_columns(p, s, widest)) {
       s.u.swap(fresh);  // back to a pair that fits the columns
@@ -164,7 +203,7 @@ Stop solve_logarithmic(const Problem& p, double gamma, double tolerance, Potenti
   potentials = {std::vector<double>(p.rows(), 0.0), std::vector<double>(p.columns(), 0.0)};
   double stage = p.largest_cost;
   while (stage > gamma) {
-    Watch brief{0, std::min(stage_iterations, watch.most - watch.iterations)};
+    Watch brief{0, std::min(stage_iterations, watch.most - watch.iterations), false, Momentum(watch.momentum.wanted())};
     (void)solve_stage(p, stage, std::max(tolerance, stage_tolerance), potentials, s, brief);
     watch.iterations += brief.iterations;
     stage *= stage_ratio;
@@ -352,14 +391,14 @@ Result<SinkhornPlan> solve_sinkhorn(const TransportSupport& support, std::span<c
   if (!(plan.gamma > 0.0)) return fail({}, "gamma", "is 0 beside the median cost");
 
   // A stall asks the flow, once: a support without a plan would go on for ever.
-  const bool dense = p.cost.size() == p.rows() * p.columns();
-  Watch watch{0, options.most_iterations, !dense};
+  const bool feasible = options.feasible || p.cost.size() == p.rows() * p.columns();
+  Watch watch{0, options.most_iterations, !feasible, Momentum(options.momentum)};
   const auto solve = [&] {
     return options.precision == SinkhornPrecision::single_float ? run<float>(p, options, plan, watch)
                                                                 : run<double>(p, options, plan, watch);
   };
   Stop stop = solve();
-  if (!dense && (stop == Stop::stalled || stop == Stop::limit)) {
+  if (!feasible && (stop == Stop::stalled || stop == Stop::limit)) {
     if (!support_is_feasible(support, row_mass, column_mass, plan)) {
       plan.state = SinkhornState::infeasible;
     } else if (stop == Stop::stalled) {

@@ -105,6 +105,7 @@ void Experience::set_content(ui::Content content, std::vector<packs::Camera> cam
   model_.mix_code.clear();
   hide_focus();
   focus_ = {ui::Widget::none, 0};
+  time_ease_.reset();
   words_stale_ = true;
   make_tour();
   desk_.show(model_, now_ms_);
@@ -125,7 +126,8 @@ double Experience::tick(double now_ms) {
 }
 
 Experience::Before Experience::before() const {
-  return {state_.weights(), state_.camera(), state_.light(), state_.light_shares(), state_.dimmer(), model_};
+  return {state_.weights(), state_.camera(), state_.light(), state_.light_shares(),
+          state_.dimmer(),  state_.time(),   model_};
 }
 
 Experience::Changes Experience::finish(const Before& before, double now_ms) {
@@ -134,7 +136,8 @@ Experience::Changes Experience::finish(const Before& before, double now_ms) {
   Changes changes;
   changes.weights = before.weights != state_.weights();
   changes.view = !same_view(before.camera, state_.camera()) || before.light != state_.light() ||
-                 before.shares != state_.light_shares() || before.dimmer != state_.dimmer();
+                 before.shares != state_.light_shares() || before.dimmer != state_.dimmer() ||
+                 before.time != state_.time();
   words_stale_ |= changes.weights;
   find_words(now_ms);
   show_model(now_ms);
@@ -165,6 +168,7 @@ bool Experience::beyond_shown() const {
 void Experience::show_model(double now_ms) {
   model_.light = state_.light();
   model_.dimmer = state_.dimmer();
+  model_.time = state_.time();
   model_.beyond_shown = beyond_shown();
   model_.language = dealer_.language();
   model_.dealer = dealer_.model();
@@ -247,6 +251,10 @@ void Experience::reset_visit(double now_ms) {
   model_.nearest.reset();
   compare_by_knob_ = false;
   mood_detents_ = 0.0;
+  if (reduced_motion())
+    state_.set_time(1.0);
+  else
+    time_ease_ = TimeEase{state_.time(), now_ms};
   move_home(now_ms);
 }
 
@@ -258,6 +266,7 @@ void Experience::reset_all(double now_ms) {
   pin_.clear();
   dealer_.leave();
   stop_camera();
+  time_ease_.reset();  // the loop goes on from where the scans are
   desk_.reset();
   state_.go_home();
   state_.apply({input::ControlKind::light, {0.0}, {}, 0, 0});
@@ -279,6 +288,7 @@ void Experience::take_script(const input::Control& event, double now_ms) {
   if (event.kind == input::ControlKind::orbit || event.kind == input::ControlKind::zoom ||
       event.kind == input::ControlKind::camera)
     stop_camera();
+  if (event.kind == input::ControlKind::time) time_ease_.reset();
   const bool changed = state_.apply(event).weights;
   const bool same = event.kind == input::ControlKind::weights && state_.weights().base == event.values;
   if (is_weights(event.kind) && (changed || same)) desk_.script(event.kind, state_.weights(), now_ms);
@@ -335,8 +345,10 @@ void Experience::advance_tour(double now_ms) {
   if (!touring_) {
     const RigPlace place = state_.rig().place();
     tour_.start({desk_.puck(now_ms), place.azimuth_deg, place.elevation_deg, place.closeness, state_.light()}, now_ms);
+    growth_.start(state_.time(), now_ms);
     touring_ = true;
   }
+  if (content_.scans) state_.set_time(growth_.at(now_ms));
   const TourPose pose = tour_.at(now_ms);
   desk_.put_puck(pose.puck, now_ms);
   if (reduced_motion()) return;
@@ -363,6 +375,13 @@ void Experience::advance_camera(double now_ms) {
                     between(ease_->from.closeness, ease_->to.closeness)});
 }
 
+void Experience::advance_time(double now_ms) {
+  if (!time_ease_) return;
+  const double part = eased((now_ms - time_ease_->since_ms) / newest_ms);
+  state_.set_time(std::lerp(time_ease_->from, 1.0, part));
+  if (part >= 1.0) time_ease_.reset();
+}
+
 Experience::Changes Experience::tell(ui::Toast toast, double now_ms) {
   const double now = tick(now_ms);
   const Before was = before();
@@ -386,6 +405,7 @@ Experience::Changes Experience::advance(double now_ms, int minute_of_day) {
   advance_knobs(now);
   advance_fingers(now);
   advance_camera(now);
+  advance_time(now);
   advance_visit(now);
   // Whoever is here is not put to sleep.
   model_.asleep = model_.screen == ui::Screen::attract && settings_.night.covers(minute_);
@@ -410,7 +430,7 @@ double Experience::wake_at_ms(double now_ms) const {
   }
   if (model_.toast && !model_.asleep) at(toast_since_ms_ + toast_ms);
   // As of the last call: whoever asks late has not shown the end of a movement yet.
-  if (coasting_ || ease_ || light_fade_ || swatch_lags_ || desk_.moves(now_ms_)) return now;
+  if (coasting_ || ease_ || time_ease_ || light_fade_ || swatch_lags_ || desk_.moves(now_ms_)) return now;
   if (corners_held_) at(corners_since_ms_ + corners_ms);
   for (const auto& [knob, press] : presses_)
     if (!press.spent) at(press.since_ms + long_press_ms);

@@ -21,6 +21,7 @@
 #include "kiosk/display/car_fingers.hpp"
 #include "kiosk/display/dealer_desk.hpp"
 #include "kiosk/display/experience_settings.hpp"
+#include "kiosk/display/growth_loop.hpp"
 #include "kiosk/display/mix_desk.hpp"
 #include "kiosk/display/orientation.hpp"
 #include "kiosk/display/pin_pad.hpp"
@@ -46,6 +47,8 @@ struct ExperienceLinks {
 inline constexpr double hold_ms = 350.0;
 /// The camera's way home.
 inline constexpr double home_ms = 600.0;
+/// A series of scans' way back to its newest.
+inline constexpr double newest_ms = 1200.0;
 /// A knob that is held this long resets mix and view.
 inline constexpr double long_press_ms = 1000.0;
 /// A dial with 24 detents a turn orbits half round with each of them.
@@ -54,6 +57,8 @@ inline constexpr double orbit_degrees_a_detent = 7.5;
 inline constexpr double zoom_detents_a_halving = 12.0;
 /// Detents of a knob from one end of a slider to the other, and from one mood of the light to the next.
 inline constexpr double detents_a_slider = 24.0, detents_a_mood = 2.0;
+/// From the first scan to the last: two turns of a dial with 24 detents, for growth is looked at closely.
+inline constexpr double detents_a_series = 48.0;
 /// The dealer's gesture: two fingers this long in both upper corners, each within this of both edges: once and a half
 /// the least touch target.
 inline constexpr double corners_ms = 3000.0, corner_mm = 1.5 * ui::least_touch_mm;
@@ -79,7 +84,7 @@ class Experience {
 
   struct Changes {
     bool weights = false;  ///< state().weights()
-    bool view = false;     ///< camera, light or dimmer
+    bool view = false;     ///< camera, light, dimmer or the scans' time
     bool interface = false;
     Changes& operator|=(const Changes& other) {
       weights |= other.weights;
@@ -138,7 +143,12 @@ class Experience {
     int light;
     LightShares shares;
     double dimmer;
+    double time;
     ui::Model model;
+  };
+  struct TimeEase {
+    double from = 0.0;
+    double since_ms = 0.0;
   };
   struct LightFade {
     LightShares from;
@@ -167,6 +177,7 @@ class Experience {
   void advance_visit(double now_ms);
   void advance_tour(double now_ms);
   void advance_camera(double now_ms);
+  void advance_time(double now_ms);
   void advance_toast(double now_ms);
   void take_script(const input::Control& event, double now_ms);
   [[nodiscard]] double wall_s() const { return links_.wall_s ? links_.wall_s() : 0.0; }
@@ -217,6 +228,7 @@ class Experience {
   DealerDesk dealer_;
   PinPad pin_;
   AttractTour tour_;
+  GrowthLoop growth_;
   std::uint64_t tours_ = 0;  ///< made so far
 
   double now_ms_ = 0.0;
@@ -229,6 +241,7 @@ class Experience {
   std::optional<Coasting> coasting_;
   std::optional<Ease> ease_;
   std::optional<LightFade> light_fade_;
+  std::optional<TimeEase> time_ease_;  ///< towards the newest scan
   double corners_since_ms_ = 0.0;
   double dragged_ms_ = 0.0;  ///< when swatches were last moved on
   double toast_since_ms_ = 0.0;

@@ -22,6 +22,7 @@ bool is_main_button(const Control& event) { return event.values.size() == 1 && e
 }  // namespace
 
 std::vector<Experience::Focus> Experience::focuses() const {
+  if (content_.scans) return {{Widget::time, 0}, {Widget::car, orbit_index}, {Widget::car, zoom_index}};
   const bool several = content_.paints.size() > 1;
   std::vector<Focus> found;
   if (several) found.emplace_back(Widget::pad, 0);
@@ -92,6 +93,10 @@ void Experience::turn_focus(double detents, double now_ms) {
       break;
     case Widget::dimmer:
       state_.apply({ControlKind::dimmer, {std::clamp(state_.dimmer() + way, 0.0, 1.0)}, {}, 0, 0});
+      break;
+    case Widget::time:
+      time_ease_.reset();
+      state_.set_time(state_.time() + detents / detents_a_series);
       break;
     case Widget::light: {
       mood_detents_ += detents;

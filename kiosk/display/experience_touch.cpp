@@ -18,7 +18,8 @@ constexpr double mm_an_inch = 25.4;
 constexpr double catch_up_a_s = 3.0, longest_catch_up_ms = 50.0;
 
 bool is_slider(Widget widget) {
-  return widget == Widget::sparkle || widget == Widget::hue || widget == Widget::beyond || widget == Widget::dimmer;
+  return widget == Widget::sparkle || widget == Widget::hue || widget == Widget::beyond || widget == Widget::dimmer ||
+         widget == Widget::time;
 }
 
 /// A finger that goes down on these and moves on at once is the puck's.
@@ -182,6 +183,10 @@ void Experience::drag(Finger& finger, double now_ms) {
       break;
     case Widget::dimmer:
       state_.apply({ControlKind::dimmer, {along}, {}, 0, 0});
+      break;
+    case Widget::time:
+      time_ease_.reset();
+      state_.set_time(along);
       break;
     default:
       break;

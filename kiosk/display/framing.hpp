@@ -17,4 +17,8 @@ enum class KeepFree { nothing, interface };
 /// 9 on and for nothing it is the camera's own.
 [[nodiscard]] gles::View framed(const packs::Camera& camera, int width, int height, KeepFree keep_free);
 
+/// The view of a camera whose subject fits a square: as high as wide, the camera's field of view is that of the
+/// picture's shorter edge. For the interface the subject stands above the slider at the lower edge.
+[[nodiscard]] gles::View framed_square(const packs::Camera& camera, int width, int height, KeepFree keep_free);
+
 }  // namespace lackwerk::kiosk

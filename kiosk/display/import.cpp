@@ -206,7 +206,7 @@ std::string import_lines(const ImportReport& report) {
 
 Result<bool> import_stick(const ImportPlaces& places) {
   const auto disk = packs::open_disk(places.store);
-  packs::Store store(*disk, {}, packs::check_paint_pack);
+  packs::Store store(*disk, {}, packs::check_pack);
   const auto keyring = packs::Keyring::open(places.keyring);
   ImportReport report;
   if (keyring) {

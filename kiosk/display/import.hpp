@@ -21,8 +21,8 @@ namespace lackwerk::kiosk {
 inline constexpr const char* stick_folder = "lackwerk";
 
 struct ImportLimits {
-  std::size_t most_packs = 16;                                  ///< the first by name
-  std::uint64_t most_pack_bytes = packs::max_paint_pack_bytes;  ///< of each
+  std::size_t most_packs = 16;                               ///< the first by name
+  std::uint64_t most_pack_bytes = packs::max_exhibit_bytes;  ///< of each
 };
 
 /// Every NAME.lwp (or .LWP) of `stick`/lackwerk that is a regular file with a regular NAME.lwp.minisig beside it goes

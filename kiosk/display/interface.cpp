@@ -31,17 +31,20 @@ bool is_touch(const Control& event) {
          event.kind == ControlKind::touch_up || event.kind == ControlKind::touch_cancel;
 }
 
-ui::Content content_of(const packs::PaintPack& pack, bool vouched) {
-  ui::Content content = ui::ui_content(pack);
+ui::Content content_of(const packs::ExhibitPack& pack, bool vouched) {
+  ui::Content content = pack.scans() != nullptr ? ui::ui_content(*pack.scans()) : ui::ui_content(*pack.paints());
   content.is_vouched = vouched;
   return content;
 }
 
-ExperienceLinks links_of(const packs::PaintPack& pack, const InterfaceSettings& settings) {
+ExperienceLinks links_of(const packs::ExhibitPack& pack, const InterfaceSettings& settings) {
   ExperienceLinks links = links_to(pack, settings.pin);
   links.wall_s = settings.wall_s ? settings.wall_s : wall_clock_s;
   return links;
 }
+
+/// The room that the eye keeps within. Scans stand in none: how far the eye may go says the camera rig.
+Room room_on(const Stage& stage) { return stage.shows_scans() ? Room{} : room_of(stage.scene()); }
 
 gles::OverlaySprite overlay_sprite(const ui::Sprite& from) {
   return {from.tile, from.x_px, from.y_px, from.width_px, from.height_px, from.opacity};
@@ -57,8 +60,8 @@ Interface::Interface(Stage& stage, const InterfaceSettings& settings, Log& log)
     : stage_(stage),
       settings_(settings),
       log_(log),
-      experience_(content_of(stage.pack(), settings.vouched), stage.scene().cameras, settings.experience,
-                  links_of(stage.pack(), settings), room_of(stage.scene())),
+      experience_(content_of(stage.pack(), settings.vouched), stage.cameras(), settings.experience,
+                  links_of(stage.pack(), settings), room_on(stage)),
       drift_(settings.drift_px) {}
 
 Result<std::unique_ptr<Interface>> Interface::create(Stage& stage, const InterfaceSettings& settings, Log& log) {
@@ -79,7 +82,7 @@ Result<void> Interface::set_up() {
   if (!overlay) return tl::unexpected(overlay.error());
   painter_ = std::move(*painter);
   overlay_ = std::move(*overlay);
-  swatches_ = std::make_unique<Swatches>(stage_.context(), stage_.pack().paint(), stage_.scene().environment);
+  make_swatches();
   return {};
 }
 
@@ -92,8 +95,15 @@ void Interface::set_surface(Rotation rotation, std::array<int, 2> panel_px, doub
   size_swatches();
 }
 
+void Interface::make_swatches() {
+  const packs::PaintPack* paints = stage_.pack().paints();
+  swatches_ = paints == nullptr
+                  ? nullptr
+                  : std::make_unique<Swatches>(stage_.context(), paints->paint(), stage_.scene().environment);
+}
+
 void Interface::size_swatches() {
-  if (!painter_) return;
+  if (!painter_ || !swatches_) return;
   constexpr int least_px = 16, most_px = 1024;
   swatches_->wants(
       std::clamp(painter_->swatch_edge_px(experience_.surface(), experience_.content()), least_px, most_px));
@@ -109,10 +119,10 @@ void Interface::content_changed(double now_ms, bool vouched) {
       log_.error(held.error());
   }
   experience_.set_links(links_of(stage_.pack(), settings_));
-  experience_.set_content(content_of(stage_.pack(), vouched), stage_.scene().cameras, room_of(stage_.scene()));
+  experience_.set_content(content_of(stage_.pack(), vouched), stage_.cameras(), room_on(stage_));
   painted_ = false;
   if (!painter_) return;
-  swatches_ = std::make_unique<Swatches>(stage_.context(), stage_.pack().paint(), stage_.scene().environment);
+  make_swatches();
   for (std::size_t k = 0; k < core::max_paints; ++k) painter_->set_swatch(k, 0, {});
   size_swatches();
 }
@@ -326,6 +336,7 @@ Result<const gles::Framebuffer*> Interface::compose(const gles::Framebuffer& pic
 }
 
 void Interface::make_swatch() {
+  if (!swatches_) return;
   auto made = swatches_->next();
   if (!made) {
     log_.error(made.error());

@@ -101,6 +101,7 @@ class Interface {
  private:
   Interface(Stage& stage, const InterfaceSettings& settings, Log& log);
   [[nodiscard]] Result<void> set_up();
+  void make_swatches();
   void size_swatches();
   [[nodiscard]] input::Control calibrated_and_moved(input::Control event) const;
   /// Nothing: its target is not there.

@@ -141,8 +141,7 @@ void Live::take_pack(double now_ms) {
   interface_.content_changed(now_ms, next.is_vouched);
   weights_changed_ = true;
   report_due_ = true;
-  const packs::PackInfo& info = stage_.pack().info();
-  log_.notice("showing " + info.id + " " + std::to_string(info.serial) +
+  log_.notice("showing " + stage_.pack().id() + " " + std::to_string(stage_.pack().serial()) +
               (next.is_signed ? "" : ", which is not signed"));
 }
 
@@ -277,11 +276,15 @@ Status Live::status() const {
   status.renderer = output_.context().info().renderer;
   status.refused = settings_.refused;
   status.mode = output_.mode();
-  const auto& paints = stage_.pack().paint().paints;
-  PackStatus pack{settings_.pack_file, stage_.pack().info().id, stage_.pack().info().serial, settings_.pack_signed, {}};
-  for (const auto& paint : paints) pack.paints.push_back(paint.identity.name);
+  PackStatus pack{settings_.pack_file, stage_.pack().id(), stage_.pack().serial(), settings_.pack_signed, {}, {}};
+  if (const packs::PaintPack* paints = stage_.pack().paints()) {
+    for (const auto& paint : paints->paint().paints) pack.paints.push_back(paint.identity.name);
+    status.weights = interface_.experience().state().weights();
+  } else {
+    for (const packs::ScanState& state : stage_.pack().scans()->info().states) pack.scans.push_back(state.name);
+    status.time = interface_.experience().state().time();
+  }
   status.packs.push_back(std::move(pack));
-  status.weights = interface_.experience().state().weights();
   if (interface_.is_shown()) {
     status.screen = screen_name(interface_.model().screen);
     status.controls = interface_.controls();

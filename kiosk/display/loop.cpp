@@ -156,7 +156,8 @@ Result<RunSummary> summarise(const Options& options, Stage& stage, Picture& pict
     if (auto written = gles::write_png((*composed)->read(), options.screenshot); !written)
       return tl::unexpected(written.error());
   }
-  summary.uploaded_bytes = stage.renderer().uploads().bytes;
+  summary.uploaded_bytes =
+      stage.shows_scans() ? stage.scan_renderer().uploaded_bytes() : stage.renderer().uploads().bytes;
   return summary;
 }
 

@@ -42,18 +42,21 @@ ui::Nearest nearest_of(const ShopColours& mix, const std::vector<ShopColours>& p
 
 }  // namespace
 
-ExperienceLinks links_to(const packs::PaintPack& pack, const std::string& pin_hash) {
-  const core::InterpolatablePaint* paint = &pack.paint();
+ExperienceLinks links_to(const packs::ExhibitPack& pack, const std::string& pin_hash) {
   ExperienceLinks links;
+  links.check_pin = [pin_hash](const std::string& pin) { return check_pin(pin_hash, pin); };
+  if (pack.paints() == nullptr) return links;
+  const core::InterpolatablePaint* paint = &pack.paints()->paint();
   links.nearest = [paint, paints = colours_of(*paint)](const core::Weights& weights) {
     return nearest_of(core::shop_colours(*paint, weights), paints);
   };
-  links.check_pin = [pin_hash](const std::string& pin) { return check_pin(pin_hash, pin); };
   links.mix_name = [paint](const core::Weights& weights, ui::Language language) {
     return packs::mix_name(*paint, weights, ui::mix_words(language));
   };
   // By value: packs are swapped, and the info is small.
-  links.mix_code = [info = pack.info()](const core::Weights& weights) { return packs::encode_mix(info, weights); };
+  links.mix_code = [info = pack.paints()->info()](const core::Weights& weights) {
+    return packs::encode_mix(info, weights);
+  };
   return links;
 }
 

@@ -7,12 +7,13 @@
 
 #include "kiosk/display/experience.hpp"
 #include "kiosk/display/ui/content.hpp"
-#include "packs/paint_pack.hpp"
+#include "packs/exhibit_pack.hpp"
+#include "packs/scene.hpp"
 
 namespace lackwerk::kiosk {
 
-/// `pin_hash`: of InterfaceSettings; empty: no PIN is right.
-[[nodiscard]] ExperienceLinks links_to(const packs::PaintPack& pack, const std::string& pin_hash);
+/// `pin_hash`: of InterfaceSettings; empty: no PIN is right. A pack of scans has no mixes to name.
+[[nodiscard]] ExperienceLinks links_to(const packs::ExhibitPack& pack, const std::string& pin_hash);
 
 /// The room that a scene's environment is.
 [[nodiscard]] Room room_of(const packs::Scene& scene);

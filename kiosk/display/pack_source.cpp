@@ -21,7 +21,7 @@ Result<ShownPack> PackSource::open_file(const std::filesystem::path& path) const
 
 Result<std::optional<ShownPack>> PackSource::open_stored() {
   const auto disk = packs::open_disk(places_.store);
-  const packs::Store store(*disk, {}, packs::check_paint_pack);
+  const packs::Store store(*disk, {}, packs::check_pack);
   const auto state = store.state();
   if (!state) return tl::unexpected(state.error());
   const packs::StoredPack* pack = state->find(state->shown);

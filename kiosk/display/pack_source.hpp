@@ -19,7 +19,7 @@ namespace lackwerk::kiosk {
 
 /// A pack that is ready to be shown.
 struct ShownPack {
-  packs::PaintPack pack;
+  packs::ExhibitPack pack;
   std::string file;  ///< where it was read
   bool is_signed = false;
   bool is_vouched = false;  ///< signed, or named by whoever started the kiosk

@@ -28,19 +28,40 @@ Picture::Picture(Stage& stage, const PictureSettings& settings)
     : stage_(stage),
       settings_(settings),
       governor_(settings.frame_ms, 0, settings.costs),
+      scans_(settings.frame_ms),
       fixed_(gles::find_rung(settings.quality)) {}
 
 Result<void> Picture::prepare(const State& state) {
+  if (stage_.shows_scans()) return {};
   if (auto updated = stage_.renderer().update(state.weights()); !updated) return updated;
   stage_.renderer().prepare(view(state), lighting(state), stage_.framebuffer());
   return {};
 }
 
 bool Picture::differs(const State& state) const {
+  if (stage_.shows_scans()) return scans_.differs(stage_, state, view(state));
   return stage_.renderer().needs_draw(view(state), lighting(state), stage_.framebuffer());
 }
 
+Picture::Step Picture::step_scans(const State& state) {
+  const gles::View shown = view(state);
+  if (scans_.differs(stage_, state, shown)) {
+    const double start = monotonic_ms();
+    scans_.draw(stage_, state, shown);
+    drawn_ms_.add(monotonic_ms() - start);
+    ++drawn_;
+    resting_ = false;
+    return Step::drawn;
+  }
+  if (resting_) return Step::nothing;
+  resting_ = true;
+  if (!scans_.complete(stage_, state, shown)) return Step::nothing;
+  ++refined_;
+  return Step::refined;
+}
+
 Result<Picture::Step> Picture::step(const State& state, bool weights_changed) {
+  if (stage_.shows_scans()) return step_scans(state);
   const double start = monotonic_ms();
   gles::Renderer& renderer = stage_.renderer();
   if (weights_changed) {
@@ -87,11 +108,19 @@ Result<Picture::Step> Picture::rest(const State& state) {
 }
 
 gles::Image Picture::still(const State& state, int samples) {
+  if (stage_.shows_scans()) {
+    const gles::View shown = view(state);
+    if (scans_.differs(stage_, state, shown)) scans_.draw(stage_, state, shown);
+    (void)scans_.complete(stage_, state, shown);
+    return stage_.framebuffer().read();
+  }
   return stage_.renderer().still(view(state), lighting(state), stage_.framebuffer(), samples);
 }
 
 gles::View Picture::view(const State& state) const {
-  return framed(state.camera(), stage_.framebuffer().width(), stage_.framebuffer().height(), settings_.keep_free);
+  const int width = stage_.framebuffer().width(), height = stage_.framebuffer().height();
+  return stage_.shows_scans() ? framed_square(state.camera(), width, height, settings_.keep_free)
+                              : framed(state.camera(), width, height, settings_.keep_free);
 }
 
 gles::Lighting Picture::lighting(const State& state) const {
@@ -101,11 +130,12 @@ gles::Lighting Picture::lighting(const State& state) const {
 }
 
 std::string Picture::quality() const {
+  if (stage_.shows_scans()) return std::to_string(stage_.scan_renderer().drawn_points()) + " points";
   return fixed_ != nullptr ? std::string(fixed_->name) : std::string(governor_.rung().name) + " (chosen)";
 }
 
 double Picture::frame_period_ms() const {
-  const double governed = fixed_ != nullptr ? 0.0 : governor_.median_ms();
+  const double governed = fixed_ != nullptr || stage_.shows_scans() ? 0.0 : governor_.median_ms();
   return governed > 0.0 ? governed : drawn_ms_.median();
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "kiosk/display/framing.hpp"
+#include "kiosk/display/scan_picture.hpp"
 #include "kiosk/display/stage.hpp"
 #include "kiosk/display/state.hpp"
 #include "render_gles/governor.hpp"
@@ -65,6 +66,7 @@ class Picture {
   [[nodiscard]] gles::View view(const State& state) const;
   [[nodiscard]] gles::Lighting lighting(const State& state) const;
   [[nodiscard]] Result<Step> rest(const State& state);
+  [[nodiscard]] Step step_scans(const State& state);
 
   /// The last times of something: a kiosk runs for months.
   class Times {
@@ -83,6 +85,7 @@ class Picture {
   Stage& stage_;
   PictureSettings settings_;
   gles::Governor governor_;
+  ScanPicture scans_;
   const gles::Rung* fixed_ = nullptr;
   gles::Quality quality_;  ///< of the frame on the framebuffer
   bool resting_ = false;

@@ -103,6 +103,15 @@ State::Changes State::set_light_shares(const LightShares& shares) {
   return changes;
 }
 
+State::Changes State::set_time(double position) {
+  Changes changes;
+  if (!std::isfinite(position)) return changes;
+  const double time = std::clamp(position, 0.0, 1.0);
+  changes.view = time != time_;
+  time_ = time;
+  return changes;
+}
+
 State::Changes State::apply(const input::Control& event) {
   using input::ControlKind;
   Changes changes;
@@ -145,6 +154,9 @@ State::Changes State::apply(const input::Control& event) {
       changes.view = event.values[0] != dimmer_;
       dimmer_ = event.values[0];
       break;
+    case ControlKind::time:
+      if (!is_number(event.values) || event.values[0] < 0.0 || event.values[0] > 1.0) break;
+      return set_time(event.values[0]);
     case ControlKind::turn:
     case ControlKind::press:
     case ControlKind::release:

@@ -29,7 +29,7 @@ class State {
   /// What an event changed. All false: it was not understood here, or it asked for what already is.
   struct Changes {
     bool weights = false;
-    bool view = false;  ///< camera, light or dimmer
+    bool view = false;  ///< camera, light, dimmer or time
     [[nodiscard]] bool any() const { return weights || view; }
   };
 
@@ -42,6 +42,8 @@ class State {
   Changes set_place(const RigPlace& place);
   /// On the way from one mood to another; apply() goes there at once.
   Changes set_light_shares(const LightShares& shares);
+  /// Where the scans are, clamped to [0, 1]; what is not finite changes nothing.
+  Changes set_time(double position);
   /// The first camera, at its own place.
   Changes go_home();
 
@@ -53,6 +55,8 @@ class State {
   [[nodiscard]] int light() const { return light_; }
   [[nodiscard]] const LightShares& light_shares() const { return light_shares_; }
   [[nodiscard]] double dimmer() const { return dimmer_; }
+  /// Of scans: [0, 1] from the first scan's time to the last one's. What nobody has moved shows the newest.
+  [[nodiscard]] double time() const { return time_; }
 
  private:
   bool set_group(std::vector<double>& group, const std::vector<double>& values) const;
@@ -68,6 +72,7 @@ class State {
   int light_ = 0;
   LightShares light_shares_ = light_alone(0);
   double dimmer_ = 0.0;
+  double time_ = 1.0;
 };
 
 /// The mix on the first paint: what every kiosk starts with.

@@ -57,11 +57,13 @@ std::string status_json(const Status& status, double now_ms) {
                             {"id", pack.id},
                             {"serial", pack.serial},
                             {"signed", pack.is_signed},
-                            {"paints", pack.paints}});
+                            {"paints", pack.paints},
+                            {"scans", pack.scans}});
   out["weights"] = {{"base", status.weights.base},
                     {"flake_lightness", status.weights.flake_lightness},
                     {"flake_colour", status.weights.flake_colour},
                     {"flake_white", status.weights.flake_white}};
+  out["time"] = status.time ? Json(rounded(*status.time, 1e-4)) : Json();
   out["resting"] = status.resting;
   out["quality"] = status.quality;
   out["frames"] = {{"drawn", status.drawn},

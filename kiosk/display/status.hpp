@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,9 @@ struct RefusedStatus {
 struct PackStatus {
   std::string file, id;
   std::uint64_t serial = 0;
-  bool is_signed = false;  ///< by a key of the keyring
-  std::vector<std::string> paints;
+  bool is_signed = false;            ///< by a key of the keyring
+  std::vector<std::string> paints;   ///< of a pack of paints
+  std::vector<std::string> scans{};  ///< of a pack of scans
 };
 
 /// Something on the screen that can be touched.
@@ -42,7 +44,8 @@ struct Status {
   std::vector<RefusedStatus> refused;
   OutputMode mode;
   std::vector<PackStatus> packs;
-  core::Weights weights;
+  core::Weights weights;                ///< of paints
+  std::optional<double> time;           ///< of scans: [0, 1] from the first to the last
   bool resting = false;                 ///< nothing changes and the picture has converged
   std::string quality;                  ///< rung of moving pictures
   std::uint64_t drawn = 0;              ///< moving frames

@@ -14,29 +14,21 @@ struct Name {
   const char* name;
   Widget widget;
 };
-constexpr std::array<Name, 20> names = {{{"car", Widget::car},
-                                         {"pad", Widget::pad},
-                                         {"swatch", Widget::swatch},
-                                         {"swatch_about", Widget::swatch_about},
-                                         {"sparkle", Widget::sparkle},
-                                         {"hue", Widget::hue},
-                                         {"beyond", Widget::beyond},
-                                         {"sparkle_lock", Widget::sparkle_lock},
-                                         {"hue_lock", Widget::hue_lock},
-                                         {"light", Widget::light},
-                                         {"dimmer", Widget::dimmer},
-                                         {"compare", Widget::compare},
-                                         {"take_home", Widget::take_home},
-                                         {"close", Widget::close},
-                                         {"countdown", Widget::countdown},
-                                         {"pin_key", Widget::pin_key},
-                                         {"page", Widget::page},
-                                         {"action", Widget::action},
-                                         {"step_down", Widget::step_down},
+constexpr std::array<Name, 21> names = {{{"car", Widget::car},           {"pad", Widget::pad},
+                                         {"swatch", Widget::swatch},     {"swatch_about", Widget::swatch_about},
+                                         {"sparkle", Widget::sparkle},   {"hue", Widget::hue},
+                                         {"beyond", Widget::beyond},     {"sparkle_lock", Widget::sparkle_lock},
+                                         {"hue_lock", Widget::hue_lock}, {"light", Widget::light},
+                                         {"dimmer", Widget::dimmer},     {"time", Widget::time},
+                                         {"compare", Widget::compare},   {"take_home", Widget::take_home},
+                                         {"close", Widget::close},       {"countdown", Widget::countdown},
+                                         {"pin_key", Widget::pin_key},   {"page", Widget::page},
+                                         {"action", Widget::action},     {"step_down", Widget::step_down},
                                          {"step_up", Widget::step_up}}};
 
 bool is_slider(Widget widget) {
-  return widget == Widget::sparkle || widget == Widget::hue || widget == Widget::beyond || widget == Widget::dimmer;
+  return widget == Widget::sparkle || widget == Widget::hue || widget == Widget::beyond || widget == Widget::dimmer ||
+         widget == Widget::time;
 }
 
 tl::unexpected<Error> missing(const input::TouchTarget& target, const char* what) {

@@ -26,6 +26,8 @@ void add_compare_command(CLI::App& app, int& exit_code);          ///< compare: 
 void add_measure_compare_command(CLI::App& app, int& exit_code);  ///< measure-compare: CIEDE2000 of two captures
 void add_flake_life_command(CLI::App& app, int& exit_code);       ///< flake-life: how fast flakes twinkle
 void add_report_command(CLI::App& app, int& exit_code);           ///< report: error against run time, stiff cases
+void add_scan_command(CLI::App& app, int& exit_code);             ///< scan morph, scan check: scans that grow
+void add_scan_render_command(CLI::App& app, int& exit_code);      ///< scan render: a picture of a scan pack
 
 /// The subcommand group `name` ("pack", "scene") of `app`, made on first use.
 [[nodiscard]] CLI::App& command_group(CLI::App& app, const char* name, const char* description);

@@ -97,7 +97,7 @@ Result<void> write_comparison(const gles::Image& sheet, const std::filesystem::p
 
 /// All shots of the sheet, in order.
 std::vector<std::pair<std::string, std::function<Result<gles::Image>()>>> shots(Studio& studio) {
-  const auto& paints = studio.car->pack().paint().paints;
+  const auto& paints = studio.car->pack().paints()->paint().paints;
   const std::size_t count = paints.size();
   const std::vector<double> even(count, 1.0 / static_cast<double>(count));
   std::vector<std::pair<std::string, std::function<Result<gles::Image>()>>> list;

@@ -39,6 +39,8 @@ int run(int argc, char** argv) {
   add_measure_compare_command(app, exit_code);
   add_flake_life_command(app, exit_code);
   add_report_command(app, exit_code);
+  add_scan_command(app, exit_code);
+  add_scan_render_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

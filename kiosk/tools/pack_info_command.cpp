@@ -6,6 +6,7 @@
 #include "kiosk/tools/commands.hpp"
 #include "kiosk/tools/output.hpp"
 #include "kiosk/tools/pack_info_json.hpp"
+#include "kiosk/tools/scan_info.hpp"
 #include "packs/paint_pack.hpp"
 
 namespace lackwerk::tools {
@@ -60,7 +61,19 @@ void print_text(const packs::PaintPack& pack) {
   }
 }
 
+int print_scans(const InfoOptions& options) {
+  const auto pack = packs::ScanPack::open(options.pack, packs::Backing::copy);
+  if (!pack) return report(pack.error());
+  if (options.json)
+    print(scan_info_json(*pack).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  else
+    print(scan_info_text(*pack));
+  return exit_done;
+}
+
 int run_info(const InfoOptions& options) {
+  if (packs::sealed_kind_of(std::filesystem::path(options.pack)) == packs::SealedKind::scan)
+    return print_scans(options);
   const auto pack = packs::PaintPack::open(options.pack, packs::Backing::copy);
   if (!pack) return report(pack.error());
   options.json ? print_json(*pack) : print_text(*pack);
@@ -71,8 +84,9 @@ int run_info(const InfoOptions& options) {
 
 void add_pack_info_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = command_group(app, "pack", "Paint packs").add_subcommand("info", "What is in a paint pack");
-  command->add_option("PACK", options->pack, "paint pack")->required();
+  CLI::App* command =
+      command_group(app, "pack", "Paint packs").add_subcommand("info", "What is in a paint or scan pack");
+  command->add_option("PACK", options->pack, "paint or scan pack")->required();
   command->add_flag("--json", options->json, "print JSON: every field, and what each of them means in which unit");
   command->callback([options, &exit_code] { exit_code = run_info(*options); });
 }

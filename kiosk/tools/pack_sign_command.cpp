@@ -71,12 +71,12 @@ Result<void> write_whole(const std::filesystem::path& path, const std::string& t
 int run_sign(const SignOptions& options) {
   auto source = packs::open_source(options.pack);
   if (!source) return report(source.error());
-  auto bytes = packs::read_source(**source, packs::max_paint_pack_bytes, options.pack);
+  auto bytes = packs::read_source(**source, packs::max_exhibit_bytes, options.pack);
   if (!bytes) return report(bytes.error());
   packs::FileHash hash;
   hash.add(*bytes);
   // What is no sound pack is not signed: the signature's comment says what the content says.
-  const auto self = packs::check_paint_pack(std::move(*bytes), options.pack);
+  const auto self = packs::check_pack(std::move(*bytes), options.pack);
   if (!self) return report(self.error());
   const auto key = open_key(options.secret);
   if (!key) return report(key.error());

@@ -40,8 +40,14 @@ Result<packs::Keyring> open_ring(const VerifyOptions& options) {
   return packs::Keyring({*key}, {});
 }
 
-/// Whichever of the two kinds the file is; the paint pack's error where it is neither.
+/// Whichever of the three kinds the file is; the paint pack's error where it is none.
 Result<Verified> verify_content(const std::string& path) {
+  const auto kind = packs::sealed_kind_of(std::filesystem::path(path));
+  if (kind == packs::SealedKind::scan) {
+    if (const auto scans = packs::ScanPack::open(path, packs::Backing::copy); !scans)
+      return tl::unexpected(scans.error());
+    return Verified{"scan pack", std::nullopt};
+  }
   const auto paint = packs::PaintPack::open(path, packs::Backing::copy);
   if (paint) return Verified{};
   if (paint.error().field != "kind") return tl::unexpected(paint.error());
@@ -56,7 +62,7 @@ Result<Verified> verify(const VerifyOptions& options) {
   if (!ring) return tl::unexpected(ring.error());
   const auto pack = packs::open_signed_pack(options.pack, *ring, false);
   if (!pack) return tl::unexpected(pack.error());
-  return Verified{"paint pack", pack->signed_as};
+  return Verified{pack->pack.kind_name(), pack->signed_as};
 }
 
 int run_verify(const VerifyOptions& options) {
@@ -80,7 +86,8 @@ int run_verify(const VerifyOptions& options) {
 
 void add_pack_verify_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command = command_group(app, "pack", "Paint packs").add_subcommand("verify", "Check a paint or scene pack");
+  CLI::App* command =
+      command_group(app, "pack", "Paint packs").add_subcommand("verify", "Check a paint, scan or scene pack");
   command->add_option("PACK", options->pack, "file to check; its signature is PACK.minisig")->required();
   auto* key = command->add_option("--key", options->key, "minisign public key (file or text) that must have signed it");
   command->add_option("--keyring", options->keyring, "folder of such keys, any of which will do")->excludes(key);

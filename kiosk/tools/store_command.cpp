@@ -127,7 +127,7 @@ void on_store(CLI::App& command, const std::shared_ptr<StoreOptions>& options, i
   command.add_flag("--json", options->json, "print JSON");
   command.callback([options, &exit_code, run] {
     const auto disk = packs::open_disk(options->root);
-    packs::Store store(*disk, settings_of(*options), packs::check_paint_pack);
+    packs::Store store(*disk, settings_of(*options), packs::check_pack);
     exit_code = run(store, *options);
   });
 }

@@ -18,7 +18,8 @@ inline std::vector<std::uint8_t> sealed(packs::SealedKind kind, std::span<const 
   const packs::Digest digest = packs::digest_of(payload);
   std::memcpy(file.data(), "LACKWERK", 8);
   file[8] = packs::sealed_format_version;
-  std::memcpy(file.data() + 12, kind == packs::SealedKind::paint ? "LWPP" : "LWSC", 4);
+  const char* word = kind == packs::SealedKind::paint ? "LWPP" : kind == packs::SealedKind::scene ? "LWSC" : "LWSN";
+  std::memcpy(file.data() + 12, word, 4);
   std::memcpy(file.data() + 16, &bytes, sizeof bytes);
   std::memcpy(file.data() + 32, digest.data(), digest.size());
   file.insert(file.end(), payload.begin(), payload.end());

@@ -106,7 +106,7 @@ class LiveSwap : public OnBackend {
     const auto from = packs::open_disk(root_ / "source"), to = packs::open_disk(root_ / "store");
     packs::StoreSettings settings;
     settings.allow_unsigned = true;
-    packs::Store store(*to, settings, packs::check_paint_pack);
+    packs::Store store(*to, settings, packs::check_pack);
     auto reader = from->open("p.lwp");
     EXPECT_TRUE(reader) << reader.error().line();
     const auto added = store.add("p.lwp", **reader, nullptr, {});
@@ -122,7 +122,7 @@ class LiveSwap : public OnBackend {
     if (!panel_->ready()) panel_->flip(static_cast<std::uint64_t>(now_ms_ * 1e3));
     return panel_->taken != taken;
   }
-  [[nodiscard]] std::string shown() const { return stage_->pack().info().id; }
+  [[nodiscard]] std::string shown() const { return stage_->pack().id(); }
   [[nodiscard]] std::size_t said(const std::string& part) const {
     const auto lines = log_.lines();
     return static_cast<std::size_t>(
@@ -208,7 +208,7 @@ TEST_P(LiveSwap, TheOldPackIsLetGo) {
       ++serial_;
       add("pack", serial_, serial_ % 2 == 0);
       for (int k = 0; k < 400 && (k < 60 || interface_->wants_swatch()); ++k) step();
-      EXPECT_EQ(stage_->pack().info().serial, serial_);
+      EXPECT_EQ(stage_->pack().serial(), serial_);
     };
     // Drivers put off what they free, so a single swap says little: the least of several does.
     constexpr int swaps = 8;

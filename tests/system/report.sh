@@ -34,7 +34,7 @@ report = json.load(open(os.path.join(folder, "report.json")))
 bad = list(report["left_out"])
 wanted = ["clusters", "octree_depth", "ranks", "corners", "cuboid_space", "angle_taps", "levels", "memory", "quality",
           "still", "light_path", "cut_lights", "coat", "ggx_samples", "isochromatic", "environment", "transport",
-          "precision"]
+          "precision", "scan_neighbours", "scan_gamma", "scan_spacing"]
 knobs = {knob["id"]: knob for knob in report["knobs"]}
 bad += ["no knob " + name for name in wanted if name not in knobs]
 for knob in report["knobs"]:

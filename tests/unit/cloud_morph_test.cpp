@@ -132,6 +132,75 @@ TEST(CloudMorph, GrowingTreeIsMatchedBothWays) {
   }
 }
 
+/// A stem (label 0) of this height with broad round leaves on stalks (labels 1, 2, ...) at its top, a third of a turn
+/// apart, each this wide and hanging down by `droop` of its length.
+PointCloud broad_leaved(double height, double width, double droop, int leaves, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto jitter = [&] { return 0.3 * (static_cast<double>(random()) / 4294967296.0 - 0.5); };
+  PointCloud cloud = scanned({{0, {0, 0, 0}, {0, 0, height}}}, seed, 0.1);
+  for (int leaf = 0; leaf < leaves; ++leaf) {
+    const double angle = 2.0943951023931953 * leaf;
+    constexpr double stalk = 8.0;
+    const Branch axis{
+        leaf + 1, {0, 0, height}, {std::cos(angle) * stalk, std::sin(angle) * stalk, height - droop * stalk}};
+    const PointCloud stalk_points = scanned({axis}, seed + 1, 0.1);
+    cloud.points.insert(cloud.points.end(), stalk_points.points.begin(), stalk_points.points.end());
+    cloud.labels.insert(cloud.labels.end(), stalk_points.labels.begin(), stalk_points.labels.end());
+    const auto across = static_cast<int>(width / 0.5);
+    for (int i = 0; i < across; ++i)
+      for (int j = 0; j < across; ++j) {
+        const double along = stalk + 0.5 * i;
+        const double aside = 0.5 * j - 0.5 * width;
+        if (std::hypot(along - stalk - 0.5 * width, aside) > 0.5 * width) continue;
+        cloud.points.emplace_back(std::cos(angle) * along - std::sin(angle) * aside + jitter(),
+                                  std::sin(angle) * along + std::cos(angle) * aside + jitter(),
+                                  height - droop * along + jitter());
+        cloud.labels.push_back(leaf + 1);
+      }
+  }
+  return cloud;
+}
+
+TEST(CloudMorph, BroadLeavesAreWholeAndGrowAndDroopAsWholes) {
+  const PointCloud early = broad_leaved(40.0, 20.0, 0.0, 2, 21);
+  const PointCloud late = broad_leaved(44.0, 26.0, 0.4, 3, 22);  // a third leaf is new
+  SegmentOptions cutting;
+  cutting.skeleton_spacing = 1.5;
+  const auto from = segments_of(early.points, cutting);
+  const auto to = segments_of(late.points, cutting);
+  ASSERT_TRUE(from && to);
+  EXPECT_EQ(from->segments.size(), 3u);
+  EXPECT_EQ(to->segments.size(), 4u);
+  for (const bool forward : {true, false}) {
+    const PointCloud& one = forward ? early : late;
+    const PointCloud& two = forward ? late : early;
+    const auto morph = forward ? morph_scans(one.points, *from, two.points, *to, {}, {})
+                               : morph_scans(one.points, *to, two.points, *from, {}, {});
+    ASSERT_TRUE(morph);
+    int matched = 0;
+    for (const SegmentMatch& match : morph->matches) {
+      if (match.kind == MatchKind::grown) {
+        EXPECT_TRUE(forward);
+        EXPECT_EQ(main_label(two, match.to_points), 3);
+      } else if (match.kind == MatchKind::decayed) {
+        EXPECT_FALSE(forward);
+        EXPECT_EQ(main_label(one, match.from_points), 3);
+      } else {
+        ++matched;
+        EXPECT_EQ(main_label(one, match.from_points), main_label(two, match.to_points))
+            << (forward ? "forward " : "backward ") << match.from_points.size() << " to " << match.to_points.size()
+            << ", " << match.distance;
+      }
+    }
+    EXPECT_EQ(matched, 3);
+    EXPECT_EQ(morph->matches.size(), 4u);
+    expect_all_leave_and_arrive(*morph, one, two);
+  }
+  // The spanning tree of the same leaves forks within them: what the levels are there for.
+  cutting.by_levels = false;
+  EXPECT_GT(segments_of(late.points, cutting)->segments.size(), 4u);
+}
+
 TEST(CloudMorph, LabelsMatchThemselves) {
   const PointCloud early = scanned(young(), 3);
   const PointCloud late = scanned(older(), 4);
@@ -245,10 +314,19 @@ TEST(CloudAlign, FindsATurnedPlantAgain) {
   for (const glm::dvec3& p : fixed.points)
     moving.emplace_back(std::cos(angle) * p.x - std::sin(angle) * p.y + 30.0,
                         std::sin(angle) * p.x + std::cos(angle) * p.y - 20.0, p.z + 5.0);
-  const Alignment found = align(moving, fixed.points, {});
-  EXPECT_LT(found.rms, 0.1);
-  for (std::size_t i = 0; i < moving.size(); ++i)
-    EXPECT_LT(glm::distance(found.motion(moving[i]), fixed.points[i]), 0.2);
+  for (const bool stands : {false, true}) {
+    AlignOptions options;
+    options.stands = stands;
+    const Alignment found = align(moving, fixed.points, options);
+    EXPECT_LT(found.rms, 0.1);
+    for (std::size_t i = 0; i < moving.size(); ++i)
+      EXPECT_LT(glm::distance(found.motion(moving[i]), fixed.points[i]), 0.2);
+    if (stands) {
+      EXPECT_NEAR(found.motion.rotation[2].z, 1.0, 1e-12);
+    }
+  }
+  EXPECT_TRUE(foot_of(fixed.points, 2));
+  EXPECT_FALSE(foot_of(broad_leaved(0.5, 20.0, 0.5, 3, 16).points, 2));
 }
 
 TEST(PointCloud, StrayPointsGoAndDensityEvensOut) {

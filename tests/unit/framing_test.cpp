@@ -58,5 +58,22 @@ TEST(Framing, NoPanelIsTooNarrow) {
     }
 }
 
+TEST(Framing, WhatFitsASquareFitsEveryPanel) {
+  const packs::Camera camera{"scans", {0.0f, -2000.0f, 400.0f}, {0.0f, 0.0f, 400.0f}, 30.0f};
+  // A place at the rim of the square, to the right: it is within the picture, and as far out as the shorter edge is.
+  const float rim = 0.95f * 2000.0f * std::tan(glm::radians(15.0f));
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {720, 720}, {720, 1280}, {1080, 1920}}) {
+    const gles::View view = framed_square(camera, width, height, KeepFree::nothing);
+    const glm::vec2 right = seen(view, width, height, glm::vec3(rim, 0.0f, 400.0f));
+    const glm::vec2 middle = seen(view, width, height, glm::vec3(0.0f, 0.0f, 400.0f));
+    const double shorter = std::min(width, height);
+    EXPECT_NEAR((right.x - middle.x) * width, 0.95 * shorter, 2.0) << width << "x" << height;
+    // For the interface it stands higher.
+    const glm::vec2 raised =
+        seen(framed_square(camera, width, height, KeepFree::interface), width, height, glm::vec3(0.0f, 0.0f, 400.0f));
+    EXPECT_NEAR(std::abs(raised.y - middle.y), 0.08, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace lackwerk::kiosk

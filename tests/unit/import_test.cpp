@@ -72,7 +72,7 @@ class Import : public ::testing::Test {
   testing::TemporaryFolder stick_;
   packs::SecretKey key_ = make_key();
   packs::MemoryStorage storage_;
-  packs::Store store_{storage_, {}, packs::check_paint_pack};
+  packs::Store store_{storage_, {}, packs::check_pack};
 };
 
 bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
@@ -234,7 +234,7 @@ TEST_F(Import, AllOfItOnADisk) {
   ASSERT_TRUE(done);
   EXPECT_TRUE(*done);
   const auto storage = packs::open_disk(disk / "store");
-  packs::Store store(*storage, {}, packs::check_paint_pack);
+  packs::Store store(*storage, {}, packs::check_pack);
   EXPECT_EQ(store.state()->shown, "summer");
 }
 

@@ -114,6 +114,29 @@ TEST(Layout, TouchTargetsAreLargeApartAndInsideOnEverySurface) {
           for (const Model& model : models(paints, language)) check({size, dpi}, content_of(paints), model);
 }
 
+TEST(Layout, TheSliderOfTimeHasAPlaceOnEverySurface) {
+  Content content = content_of(1);
+  content.scans = ScanFacts{"Tomato", "days", {5.0, 6.0, 8.0}};
+  for (const auto& size : sizes)
+    for (const double dpi : {60.0, 96.0, 160.0, 300.0})
+      for (const Language language : {Language::english, Language::arabic})
+        for (const Model& model : models(1, language)) {
+          check({size, dpi}, content, model);
+          if (model.screen != Screen::show) continue;
+          const auto items = layout({size, dpi}, content, model);
+          const auto time = find_item(items, Widget::time);
+          ASSERT_TRUE(time);
+          EXPECT_FALSE(find_item(items, Widget::pad));
+          // The hand points at its knob.
+          const Track track = slider_track({size, dpi}, *time, language);
+          const auto hint = arrange({size, dpi}, content, model).find(Part::hint);
+          ASSERT_TRUE(hint);
+          if (model.nearest) continue;
+          EXPECT_NEAR(hint->centre()[0],
+                      std::clamp(track.at(model.time)[0], 0.5 * hint->width, size[0] - 0.5 * hint->width), 2.0);
+        }
+}
+
 TEST(Layout, SmallestSurfaceWithRoomStillHasTwelveMillimetres) {
   // 90 mm along the shorter edge at 300 dpi.
   for (const std::array<int, 2> size : {std::array{1063, 1063}, std::array{1890, 1063}, std::array{1063, 1890}})

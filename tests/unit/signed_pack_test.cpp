@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "tests/unit/pack_samples.hpp"
+#include "tests/unit/scan_samples.hpp"
 
 namespace lackwerk::packs {
 namespace {
@@ -81,6 +82,56 @@ TEST_F(SignedPack, EveryFlippedBitOfTheSignatureIsRefused) {
   }
   ASSERT_TRUE(open());
   std::printf("%zu single-bit flips of a signature of %zu bytes, all refused\n", refused, text.size());
+}
+
+// ---- scans come by the same way
+
+TEST_F(SignedPack, ScansAreSignedAndRefusedAsPaintsAre) {
+  const testing::SampleScans sample("growth", 7, 60);
+  const std::filesystem::path path = folder_ / "scans.lwp";
+  ASSERT_TRUE(write_scan_pack(path, sample.contents));
+  EXPECT_FALSE(open_signed_pack(path, ring_, false)) << "not signed";
+  const std::vector<char> bytes = testing::read_bytes(path);
+  const auto sign_as = [&](const char* id, std::uint64_t serial) {
+    FileHash hash;
+    hash.add({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    const std::string text = signature_text(key_.sign(hash.finish(), trusted_comment(id, serial)));
+    testing::write_bytes(signature_path(path), text.data(), text.size());
+  };
+  sign_as("growth", 8);
+  const auto other = open_signed_pack(path, ring_, false);
+  ASSERT_FALSE(other) << "signed as another serial than it has";
+  EXPECT_EQ(other.error().file, signature_path(path).string());
+  sign_as("growth", 7);
+  const auto opened = open_signed_pack(path, ring_, false);
+  ASSERT_TRUE(opened) << opened.error().line();
+  EXPECT_EQ(opened->pack.paints(), nullptr);
+  ASSERT_NE(opened->pack.scans(), nullptr);
+  EXPECT_EQ(opened->pack.scans()->info().states.size(), 3u);
+  EXPECT_EQ(opened->pack.id(), "growth");
+  EXPECT_EQ(opened->pack.serial(), 7u);
+  EXPECT_STREQ(opened->pack.kind_name(), "scan pack");
+  testing::BitFlipper file(path);
+  for (std::size_t bit = 0; bit < file.size_bits(); bit += 7) {
+    file.flip(bit);
+    ASSERT_FALSE(open_signed_pack(path, ring_, false)) << "bit " << bit;
+    file.flip(bit);
+  }
+}
+
+TEST_F(SignedPack, TheStoreTakesBothKinds) {
+  const testing::SampleScans sample("growth", 7, 60);
+  ASSERT_TRUE(write_scan_pack(folder_ / "scans.lwp", sample.contents));
+  for (const char* name : {"p.lwp", "scans.lwp"}) {
+    const std::vector<char> text = testing::read_bytes(folder_ / name);
+    std::vector<std::uint8_t> bytes(text.begin(), text.end());
+    const auto self = check_pack(bytes, name);
+    ASSERT_TRUE(self) << self.error().line();
+    EXPECT_EQ(self->id, std::string(name) == "p.lwp" ? "summer" : "growth");
+    bytes[bytes.size() / 2] ^= 1;
+    EXPECT_FALSE(check_pack(bytes, name));
+  }
+  EXPECT_FALSE(check_pack({1, 2, 3}, "nothing"));
 }
 
 }  // namespace

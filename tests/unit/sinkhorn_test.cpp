@@ -284,5 +284,42 @@ TEST(Sinkhorn, BadInputIsOneLine) {
   EXPECT_EQ(field(single, {1.0}, {1.0}, at(NAN)), "gamma");
 }
 
+TEST(Sinkhorn, MomentumFindsTheSamePlanInFewerIterations) {
+  // A chain where mass must creep from link to link: each row reaches the columns beside its own.
+  constexpr std::uint32_t count = 300;
+  TransportSupport chain;
+  chain.columns = count;
+  for (std::uint32_t a = 0; a < count; ++a) {
+    for (std::uint32_t b = a < 2 ? 0 : a - 2; b < std::min(count, a + 3); ++b) {
+      chain.column.push_back(b);
+      chain.cost.push_back(std::abs(static_cast<double>(a) - static_cast<double>(b)));
+    }
+    chain.row_begin.push_back(static_cast<std::uint32_t>(chain.column.size()));
+  }
+  std::vector<double> leave(count, 1.0), arrive(count, 1.0);
+  leave[10] += 1.0;  // carried the length of the chain, a little by everyone
+  arrive[count - 10] += 1.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    leave[i] /= count + 1.0;
+    arrive[i] /= count + 1.0;
+  }
+  for (const auto precision : {SinkhornPrecision::double_float, SinkhornPrecision::single_float}) {
+    SinkhornOptions options = at(1.0, SinkhornDomain::logarithmic);
+    options.precision = precision;
+    options.most_iterations = 200000;
+    const auto plain = solve_sinkhorn(chain, leave, arrive, options);
+    options.momentum = options.feasible = true;
+    const auto quick = solve_sinkhorn(chain, leave, arrive, options);
+    ASSERT_TRUE(plain && quick);
+    EXPECT_EQ(plain->state, SinkhornState::converged) << plain->marginal_violation;
+    EXPECT_EQ(quick->state, SinkhornState::converged) << quick->marginal_violation;
+    EXPECT_LT(5 * quick->iterations, plain->iterations) << plain->iterations << " without";
+    expect_sound(*quick, "momentum");
+    double apart = 0.0;
+    for (std::size_t e = 0; e < plain->mass.size(); ++e) apart += std::abs(plain->mass[e] - quick->mass[e]);
+    EXPECT_LT(apart, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace lackwerk::core

@@ -16,6 +16,10 @@ class Show {
       : m_(metrics), surface_(surface), content_(content), model_(model), out_(out) {}
 
   void arrange() {
+    if (content_.scans) {
+      series();
+      return;
+    }
     if (m_.portrait)
       column();
     else
@@ -178,11 +182,28 @@ class Show {
     piece(Part::mix_name, {m_.margin, name_y, room, name_height()});
   }
 
+  /// Scans: one slider across the lower edge, its words above it.
+  void series() {
+    const double width = std::min(m_.width - 2.0 * m_.margin, std::max(1.1 * m_.edge, 13.0 * m_.target));
+    const double words = std::round(2.2 * m_.text), height = words + m_.target;
+    const Rect glass{(m_.width - width) / 2.0, m_.height - m_.margin - height, width, height};
+    piece(Part::time_glass, glass);
+    const double side = 0.35 * m_.target;
+    piece(Part::time_words, {glass.x + side, glass.y + 0.3 * m_.text, glass.width - 2.0 * side, words});
+    item(Widget::time, 0, {glass.x, glass.y + words, glass.width, m_.target});
+    if (!model_.hint) return;
+    const Track track = slider_track(surface_, out_.items.back(), Language::english);
+    hint_at(track.at(std::clamp(model_.time, 0.0, 1.0)));
+  }
+
   void hint() {
-    const double side = 1.4 * m_.target;
     const Rect field = pad_field(surface_, pad_);
-    const Place puck{field.x + model_.puck[0] * field.width, field.y + model_.puck[1] * field.height};
-    // The finger's tip on the puck.
+    hint_at({field.x + model_.puck[0] * field.width, field.y + model_.puck[1] * field.height});
+  }
+
+  /// The finger's tip on the puck.
+  void hint_at(Place puck) {
+    const double side = 1.4 * m_.target;
     piece(Part::hint, {std::clamp(puck[0] - side / 2.0, 0.0, m_.width - side),
                        std::clamp(puck[1] - 0.05 * side, 0.0, m_.height - side), side, side});
   }

@@ -19,6 +19,8 @@ enum class Part : std::uint8_t {
   slider_glass,   ///< show: behind the sliders
   light_glass,    ///< show: behind light moods and dimmer
   dock_glass,     ///< show: behind compare and take home
+  time_glass,     ///< show, scans: behind the slider of time and its words
+  time_words,     ///< show, scans: the series' name and the time that is shown
   mix_name,       ///< show
   hint,           ///< show: the hand on the pad
   divider,        ///< show, comparing: between mix and nearest paint

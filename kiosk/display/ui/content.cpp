@@ -5,6 +5,7 @@
 #include "core/character.hpp"
 #include "core/colour.hpp"
 #include "packs/paint_pack.hpp"
+#include "packs/scan_pack.hpp"
 
 namespace lackwerk::kiosk::ui {
 namespace {
@@ -37,6 +38,23 @@ Content ui_content(const packs::PaintPack& pack) {
     out.paints.push_back({paint.paints[k].identity, display_of(core::shop_colours(paint, weights)[face_angle]),
                           core::liveliness(paint, weights)});
   }
+  return out;
+}
+
+Content ui_content(const packs::ScanPack& pack) {
+  const packs::ScanInfo& info = pack.info();
+  Content out;
+  out.pack_id = info.id;
+  out.serial = info.serial;
+  out.has_flakes = false;
+  PaintFacts series;
+  series.identity.name = info.name;
+  out.paints.push_back(std::move(series));
+  ScanFacts& scans = out.scans.emplace();
+  scans.name = info.name;
+  scans.time_unit = info.time_unit;
+  scans.times.reserve(info.states.size());
+  for (const packs::ScanState& state : info.states) scans.times.push_back(state.time);
   return out;
 }
 

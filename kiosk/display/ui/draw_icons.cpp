@@ -56,6 +56,24 @@ void droplet(cairo_t* cr) {
   cairo_restore(cr);
 }
 
+/// A stem that bends, with a leaf to either side.
+void sprout(cairo_t* cr) {
+  cairo_move_to(cr, 0.0, 0.92);
+  cairo_curve_to(cr, 0.06, 0.5, 0.06, 0.2, 0.0, -0.05);
+  cairo_stroke(cr);
+  const auto leaf = [cr](double side, double from_y, double reach, double rise) {
+    cairo_move_to(cr, 0.0, from_y);
+    cairo_curve_to(cr, 0.05 * side, from_y - 0.9 * rise, 0.5 * side * reach, from_y - 1.05 * rise, side * reach,
+                   from_y - rise);
+    cairo_curve_to(cr, side * reach, from_y - 0.35 * rise, 0.55 * side * reach, from_y + 0.08, 0.0, from_y);
+    cairo_close_path(cr);
+  };
+  leaf(1.0, -0.02, 0.82, 0.8);
+  cairo_fill(cr);
+  leaf(-1.0, 0.3, 0.72, 0.6);
+  cairo_stroke(cr);
+}
+
 /// An arrow that leaves a circle.
 void beyond(cairo_t* cr) {
   cairo_arc(cr, -0.22, 0.22, 0.66, -0.1 * pi, 1.6 * pi);
@@ -243,6 +261,9 @@ void draw_icon(cairo_t* cr, Icon icon, Place centre, double size, const Colour& 
       break;
     case Icon::moon:
       moon(cr);
+      break;
+    case Icon::sprout:
+      sprout(cr);
       break;
     case Icon::compare:
       compare(cr);

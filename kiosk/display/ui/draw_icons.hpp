@@ -23,6 +23,7 @@ enum class Icon : std::uint8_t {
   sun,
   evening,
   moon,
+  sprout,
   compare,
   qr,
   close,

@@ -51,7 +51,7 @@ void mirror(Arrangement& arrangement, double width) {
     }
   }
   for (Piece& piece : arrangement.pieces) {
-    if (piece.part == Part::hint)
+    if (piece.part == Part::hint && pad)
       piece.rect.x += moved;
     else if (!names_half(piece.part))
       mirror(piece.rect, width);

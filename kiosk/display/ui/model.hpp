@@ -47,6 +47,7 @@ enum class Widget : std::uint8_t {
   hue_lock,
   light,      ///< index: 0 to 2, the three moods
   dimmer,     ///< slider: day (0) to showroom night (1)
+  time,       ///< slider: from the first scan (0) to the last (1)
   compare,    ///< held: the nearest measured paint beside the mix
   take_home,  ///< button
   close,      ///< of take_home, about, pin and dealer
@@ -121,6 +122,7 @@ struct Model {
 
   int light = 0;        ///< [0, 2]
   double dimmer = 0.0;  ///< [0, 1]
+  double time = 1.0;    ///< [0, 1] from the first scan to the last
 
   std::optional<Nearest> nearest;     ///< while compare is held
   std::optional<double> countdown_s;  ///< whole seconds, while it is visible

@@ -173,9 +173,14 @@ void paint_pad(const Look& look) {
   for (const Item& item : look.arrangement.items)
     if (item.widget == Widget::swatch) paint_swatch(look, item, disc(item.index));
   if (paints > 1) paint_puck(look, field);
-  if (const auto hint = look.arrangement.find(Part::hint))
-    look.tiles.show(TileKind::hint, 0, look.base, *hint,
-                    [&](cairo_t* cr) { draw_icon(cr, Icon::hand, hint->centre(), hint->width, text_colour); });
+  paint_hint(look);
+}
+
+void paint_hint(const Look& look) {
+  const auto hint = look.arrangement.find(Part::hint);
+  if (!hint) return;
+  look.tiles.show(TileKind::hint, 0, look.base, *hint,
+                  [&](cairo_t* cr) { draw_icon(cr, Icon::hand, hint->centre(), hint->width, text_colour); });
 }
 
 }  // namespace lackwerk::kiosk::ui

@@ -95,6 +95,8 @@ void draw_emphasis(const Look& look, cairo_t* cr, const Item& item);
 void paint_attract(const Look& look);
 void paint_show(const Look& look);
 void paint_pad(const Look& look);
+/// The hand that shows what to do, on top of what it shows.
+void paint_hint(const Look& look);
 void paint_compare(const Look& look);
 void paint_take_home(const Look& look);
 void paint_about(const Look& look);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "kiosk/display/ui/painter_parts.hpp"
 
@@ -15,11 +16,12 @@ struct SliderLook {
   bool follows;  ///< the pad: its lock is closed
 };
 
-std::array<SliderLook, 4> sliders_of(const Model& model) {
+std::array<SliderLook, 5> sliders_of(const Model& model) {
   return {{{Widget::sparkle, Icon::sparkle, model.sparkle, !model.sparkle_free},
            {Widget::hue, Icon::droplet, model.hue, !model.hue_free},
            {Widget::beyond, Icon::beyond, model.beyond, false},
-           {Widget::dimmer, Icon::moon, model.dimmer, false}}};
+           {Widget::dimmer, Icon::moon, model.dimmer, false},
+           {Widget::time, Icon::sprout, model.time, false}}};
 }
 
 Colour colour_of(const PaintFacts& paint, double alpha = 1.0) {
@@ -35,9 +37,20 @@ void draw_sparkle_track(const Look& look, cairo_t* cr, const Track& along, doubl
   }
 }
 
+/// Where the slider of time stands at each scan: what was measured, and not grown between.
+void draw_scans(const Look& look, cairo_t* cr, const Track& along, double alpha) {
+  const ScanFacts& scans = *look.content.scans;
+  const double span = scans.times.back() - scans.times.front(), half = 0.13 * look.m.target;
+  for (const double time : scans.times) {
+    const Place at = along.at((time - scans.times.front()) / span);
+    draw_line(cr, {at[0], at[1] - half}, {at[0], at[1] + half}, look.line, text_colour.with(0.75 * alpha));
+  }
+}
+
 void draw_track(const Look& look, cairo_t* cr, Widget widget, const Track& along, double alpha) {
   const double line = 2.0 * look.line;
   if (widget == Widget::sparkle) return draw_sparkle_track(look, cr, along, alpha);
+  if (widget == Widget::time && look.content.scans) draw_scans(look, cr, along, alpha);
   std::vector<Colour> colours;
   if (widget == Widget::hue) {
     // White flakes, then each paint's colour.
@@ -91,10 +104,11 @@ void paint_knob(const Look& look, const Item& item, const SliderLook& slider) {
 constexpr std::array slider_widgets{Widget::sparkle, Widget::hue, Widget::beyond, Widget::sparkle_lock,
                                     Widget::hue_lock};
 constexpr std::array light_widgets{Widget::light, Widget::dimmer};
+constexpr std::array time_widgets{Widget::time};
 constexpr std::array dock_widgets{Widget::compare, Widget::take_home};
 
 /// Tiles of kind panel.
-constexpr int slider_panel = 0, light_panel = 1, dock_panel = 2, name_panel = 4;
+constexpr int slider_panel = 0, light_panel = 1, dock_panel = 2, name_panel = 4, time_panel = 5;
 
 void draw_control(const Look& look, cairo_t* cr, const Item& item) {
   constexpr std::array light_icons{Icon::soft_box, Icon::sun, Icon::evening};
@@ -179,6 +193,31 @@ void paint_name(const Look& look) {
                   [&](cairo_t* cr) { look.fonts.draw(cr, words, style, box); });
 }
 
+/// The slider of time: what grows, and when it is.
+void paint_series(const Look& look) {
+  const auto glass_rect = look.arrangement.find(Part::time_glass), words = look.arrangement.find(Part::time_words);
+  if (!glass_rect || !words || !look.content.scans) return;
+  const ScanFacts& scans = *look.content.scans;
+  Key series(scans.name);
+  for (const double time : scans.times) series.add(time);
+  paint_panel(look, time_panel, *glass_rect, time_widgets, series);
+  char number[32];
+  std::snprintf(number, sizeof number, "%.1f", scans.time_at(std::clamp(look.model.time, 0.0, 1.0)));
+  const std::string now = std::string(number) + (scans.time_unit.empty() ? "" : " ") + scans.time_unit;
+  TextStyle figure = look.style(1.2, Weight::medium);
+  figure.align = Align::trailing;
+  figure.machine_text = true;
+  // Wide enough for any time, so that the tile stays where it is.
+  const double width = std::min(words->width / 2.0, 16.0 * look.m.text);
+  const Rect name = whole(look.leading(*words, words->width - width));
+  const Rect time = whole(look.after(*words, words->width - width));
+  TextStyle style = look.style(1.0);
+  look.tiles.show(TileKind::label, 0, Key(look.base, scans.name), name,
+                  [&](cairo_t* cr) { look.fonts.draw(cr, scans.name, style, name); });
+  look.tiles.show(TileKind::name, 0, Key(look.base, now), time,
+                  [&](cairo_t* cr) { look.fonts.draw(cr, now, figure, time); });
+}
+
 /// Four corners around the picture: the knob turns the car.
 void paint_brackets(const Look& look) {
   if (look.model.focus != Widget::car) return;
@@ -206,7 +245,8 @@ void paint_mark(const Look& look) {
   style.spacing_em = warns ? 0.0 : 0.42;
   style.machine_text = !warns;
   style.align = Align::centre;
-  const std::string_view word = warns ? look.text(Text::unsigned_pack) : "LACKWERK";
+  const std::string_view word =
+      warns ? look.text(look.content.scans ? Text::unsigned_scans : Text::unsigned_pack) : "LACKWERK";
   const double height = std::round(2.6 * look.m.text);
   const double width = std::ceil(look.size_of(word, style, 0.0)[0]) + height;
   const double x = look.mirrored() ? look.m.width - look.m.margin - width : look.m.margin;
@@ -258,9 +298,14 @@ void paint_show(const Look& look) {
       for (const double value : paint.srgb) state.add(value);
     paint_panel(look, slider_panel, *rect, slider_widgets, state);
   }
-  paint_dock(look);
-  paint_name(look);
-  paint_pad(look);
+  if (look.content.scans) {
+    paint_series(look);
+    paint_hint(look);
+  } else {
+    paint_dock(look);
+    paint_name(look);
+    paint_pad(look);
+  }
   paint_brackets(look);
 }
 

@@ -47,6 +47,7 @@ constexpr std::array<Line, text_count> table{{
     {Text::options, {"Options", "Optionen", "الخيارات"}},
     {Text::no_packs, {"No packs", "Keine Pakete", "لا توجد حزم"}},
     {Text::unsigned_pack, {"Unsigned paints", "Lacke ohne Signatur", "دهانات بلا توقيع"}},
+    {Text::unsigned_scans, {"Unsigned scans", "Scans ohne Signatur", "مسوحات بلا توقيع"}},
     {Text::no_devices, {"No devices", "Keine Geräte", "لا توجد أجهزة"}},
     {Text::no_errors, {"No errors", "Keine Fehler", "لا توجد أخطاء"}},
     {Text::new_paints, {"New paints are in: {}", "Neue Lacke sind da: {}", "وصلت دهانات جديدة: {}"}},

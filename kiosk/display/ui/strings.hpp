@@ -44,6 +44,7 @@ enum class Text : std::uint8_t {
   options,
   no_packs,
   unsigned_pack,
+  unsigned_scans,
   no_devices,
   no_errors,
   new_paints,     ///< {}: their packs

@@ -8,9 +8,11 @@
 #include "kiosk/tools/report/picture_knobs.hpp"
 #include "kiosk/tools/report/precision_knob.hpp"
 #include "kiosk/tools/report/realise_part.hpp"
+#include "kiosk/tools/report/scan_knobs.hpp"
 #include "kiosk/tools/report/stiff_clusters.hpp"
 #include "kiosk/tools/report/stiff_model.hpp"
 #include "kiosk/tools/report/stiff_numbers.hpp"
+#include "kiosk/tools/report/stiff_scans.hpp"
 #include "kiosk/tools/report/stiff_sinkhorn.hpp"
 #include "kiosk/tools/report/stiff_transport.hpp"
 #include "kiosk/tools/report/transport_knobs.hpp"
@@ -45,6 +47,11 @@ Result<void> add_stiff_octrees(Workbench& bench, Findings& findings) {
   return {};
 }
 
+Result<void> add_stiff_scan_pairs(Workbench& /*bench*/, Findings& findings) {
+  add_stiff_scans(findings);
+  return {};
+}
+
 }  // namespace
 
 std::span<const Part> parts() {
@@ -56,10 +63,12 @@ std::span<const Part> parts() {
       Part{"light", 4.0, 40.0, add_light},
       Part{"materials", 4.0, 40.0, add_materials},
       Part{"precision", 0.5, 2.0, add_precision},
+      Part{"scans", 4.0, 40.0, add_scans},
       Part{"stiff model", 0.5, 2.0, add_stiff_models},
       Part{"stiff kernels", 5.0, 8.0, add_stiff_kernels},
       Part{"stiff transport", 3.0, 4.0, add_stiff_transports},
       Part{"stiff clusters", 1.0, 8.0, add_stiff_octrees},
+      Part{"stiff scans", 1.0, 1.0, add_stiff_scan_pairs},
   };
   return all;
 }

@@ -59,7 +59,7 @@ Result<void> PictureStage::open(Workbench& bench) {
   auto timed = gles::Framebuffer::create(stage_->context(), timed_width_px, timed_height_px);
   if (!timed) return tl::unexpected(timed.error());
   timed_ = std::make_unique<gles::Framebuffer>(std::move(*timed));
-  weights_ = kiosk::first_paint(static_cast<int>(stage_->pack().paint().paints.size()));
+  weights_ = kiosk::first_paint(static_cast<int>(stage_->pack().paints()->paint().paints.size()));
   if (auto updated = stage_->renderer().update(weights_); !updated) return updated;
   const packs::Camera& camera = stage_->scene().cameras.front();
   view_ = gles::View::from(camera);
@@ -71,7 +71,7 @@ Result<void> PictureStage::open(Workbench& bench) {
 Result<void> PictureStage::render_reference(int samples) {
   const int width = stage_->framebuffer().width(), height = stage_->framebuffer().height();
   const tools::ReferenceJob job{
-      &stage_->scene(), &stage_->pack().paint(), &weights_, view_, lighting_, width, height, {}};
+      &stage_->scene(), &stage_->pack().paints()->paint(), &weights_, view_, lighting_, width, height, {}};
   const auto exposure = static_cast<double>(lighting_.exposure);
   const auto shown = [&](const core::ReferenceImage& image) {
     gles::Image out(width, height);

@@ -79,7 +79,7 @@ packs::Keyring sign(const fs::path& pack) {
   if (!content) give_up(content.error());
   packs::FileHash hash;
   hash.add(*content);
-  const auto self = packs::check_paint_pack(std::move(*content), pack.string());
+  const auto self = packs::check_pack(std::move(*content), pack.string());
   if (!self) give_up(self.error());
   std::ofstream(packs::signature_path(pack))
       << packs::signature_text(key->sign(hash.finish(), packs::trusted_comment(self->id, self->serial)));
@@ -87,7 +87,7 @@ packs::Keyring sign(const fs::path& pack) {
 }
 
 void add(packs::Storage& storage, const fs::path& pack, const packs::Keyring& ring) {
-  packs::Store store(storage, {}, packs::check_paint_pack);
+  packs::Store store(storage, {}, packs::check_pack);
   auto source = packs::open_source(pack), signature = packs::open_source(packs::signature_path(pack));
   if (!source) give_up(source.error());
   if (!signature) give_up(signature.error());
